@@ -13,34 +13,34 @@ namespace tessera::golden {
 /// How one axis is read outside the map: `clamp` holds the border texel, `repeat` is periodic.
 enum class AddressMode { clamp, repeat };
 
-/// The Rank Table (4.7): for each texel of the lattice that the base mesh lies on, what leaving out the midpoint there
-/// costs, on logarithmic scales. Row by row from the bottom. An empty list: the design lacks it.
+/// The Rank Table (4.7): for each texel of the lattice on which the base mesh lies, the error of leaving out the
+/// midpoint there, on logarithmic scales. Rows from the bottom. A list is empty if the design lacks that part.
 struct RankTable {
     std::int64_t columns = 0, rows = 0;
     std::vector<std::uint16_t> ranks, bounds;
-    std::vector<std::uint8_t> radii;  ///< codes; beside bounds that depend on distance
-    int highest_bound_threshold = 0;  ///< up to which the bounds hold
+    std::vector<std::uint8_t> radii;  ///< codes; present with bounds that depend on distance
+    int highest_bound_threshold = 0;  ///< largest threshold for which the bounds hold
 };
 
-/// What the Curvature Table (4.8) says of a square of 2^l texels, in codes: by how much the midpoint of an edge (u, v) 2^l
-/// leaves its chord, | xx u^2 + xy u v + yy v^2 |, and what the map leaves of that on the average. All are multiples of
-/// `unit`.
+/// An entry of the Curvature Table (4.8) for a square of 2^l texels, in codes: | xx u^2 + xy u v + yy v^2 | is the
+/// distance of the midpoint of an edge (u, v) 2^l from its chord, `rest` the root mean square of the remaining
+/// deviation of the map. All are multiples of `unit`.
 struct Curvature {
     double xx = 0, xy = 0, yy = 0, rest = 0;
     double unit = 0;
 };
 
-/// Of levels l = 2, 3, ... one after another, each row by row from the bottom: a cell every 2^(l - 1) texels.
+/// Levels l = 2, 3, ... in succession, each with its rows from the bottom and a cell every 2^(l - 1) texels.
 struct CurvatureTable {
-    std::int64_t columns = 0, rows = 0;  ///< texels that it covers
+    std::int64_t columns = 0, rows = 0;  ///< texels covered
     std::vector<Curvature> cells;
 };
 
-/// What a block of a mipmap (4.9) has for its height: its texels' mean, rounded to nearest, or their maximum.
+/// The height of a block of a mipmap (4.9): the mean of its texels, rounded to nearest, or their maximum.
 enum class MipmapFilter { mean, maximum };
 
-/// How the displacement map and the normal map are read: the texel that contains t, or between the four texels whose
-/// centres surround it.
+/// How the displacement map and the normal map are read: the texel that contains t, or interpolation between the four
+/// texels whose centres surround t.
 enum class Filter { nearest, bilinear };
 
 /// A displacement map with its summed-area table and normal map (ALGORITHM.md section 2).
@@ -56,7 +56,7 @@ class Map {
     AddressMode address_u() const { return address_u_; }
     AddressMode address_v() const { return address_v_; }
 
-    /// What the displacement map holds.
+    /// The code in the displacement map.
     double code(std::size_t texel) const { return heights_.empty() ? codes_[texel] : heights_[texel]; }
     /// N_d; flat, (0, 0, 1), until derive_normals() or set_normals() is called.
     glm::dvec3 normal(std::size_t texel) const;
@@ -68,7 +68,7 @@ class Map {
     /// (repeat).
     std::size_t texel(const glm::dvec2& t) const;
 
-    /// The code and N_d at t. Interpolated, N_d is at most of unit length.
+    /// The code and N_d at t. An interpolated N_d may be shorter than a unit vector.
     double code(const glm::dvec2& t, Filter filter) const;
     glm::dvec3 normal(const glm::dvec2& t, Filter filter) const;
 
@@ -80,33 +80,33 @@ class Map {
     /// Uses the given normal map, e.g. the hardware's, dequantised.
     void set_normals(std::vector<glm::dvec3> normals);
 
-    /// Other heights for the displacement map to hold, the author's as its codes are. All else still follows from these.
+    /// Sets the displacement map's heights, in codes. Everything else is still derived from the original codes.
     void set_heights(std::vector<double> heights);
 
     /// Uses a Rank Table, in place of the Summed Height Test. It may be larger than the map.
     void set_ranks(RankTable table) { rank_table_ = std::move(table); }
     const RankTable& rank_table() const { return rank_table_; }
     bool has_ranks() const { return rank_table_.columns > 0; }
-    /// Rank and bound at the texel that contains t; 0 for what the table lacks.
+    /// Rank and bound at the texel that contains t; 0 for parts that the table lacks.
     struct Rank {
         int rank = 0, bound = 0, radius = 0;
     };
     Rank rank(const glm::dvec2& t) const;
-    /// By which the cut `greatest_rank` compares midpoints: the rank or, without ranks, the bound.
+    /// The value by which the cut `greatest_rank` compares midpoints: the rank or, without ranks, the bound.
     int order(const Rank& rank) const { return rank_table_.ranks.empty() ? rank.bound : rank.rank; }
 
     /// Uses a Curvature Table, in place of the Summed Height Test. It may cover more than the map.
     void set_curvatures(CurvatureTable table) { curvature_table_ = std::move(table); }
     const CurvatureTable& curvature_table() const { return curvature_table_; }
     bool has_curvatures() const { return curvature_table_.columns > 0; }
-    /// Of the cell nearest to the texel that contains t; level >= 2, at most the table's highest.
+    /// The cell nearest to the texel that contains t. level: from 2 to the table's highest.
     Curvature curvature(const glm::dvec2& t, int level) const;
 
-    /// Filters the map down, for a Mipmap Test in place of the Summed Height Test.
+    /// Builds the mipmap of a Mipmap Test that replaces the Summed Height Test.
     void make_mipmap(MipmapFilter filter);
-    /// Heights of the blocks of 2^l x 2^l texels of each level l, row by row from the bottom; empty: none were made.
+    /// Heights of the blocks of 2^l x 2^l texels of each level l, rows from the bottom; empty if no mipmap was built.
     const std::vector<std::vector<double>>& mipmap() const { return mipmap_; }
-    /// Of the block that holds the texel that contains t; level: at most the last.
+    /// The height of the block that holds the texel that contains t. level: at most the last.
     double mipmap_height(const glm::dvec2& t, int level) const;
 
     /// Width and height in texels of the Summed Height Test's three rectangles on an edge (4.2):

@@ -55,7 +55,6 @@ void measure_curvature(const Vertex& i, const Vertex& j, const Vertex& m, const 
     e.curvature = (std::max(bend, c.rest) + whole_units(std::min(bend, c.rest) / 2)) * length;
 }
 
-// Section 4.7. A rank and a bound, of r and s bits, have 6 and 5 bits in front of the point.
 // Section 4.9.
 double mipmap_deviation(const Vertex& i, const Vertex& j, const Vertex& m, const Map& map) {
     const glm::dvec2 d = glm::abs(i.texture - j.texture);
@@ -68,6 +67,7 @@ double mipmap_deviation(const Vertex& i, const Vertex& j, const Vertex& m, const
     return std::abs(height(m) - (height(i) + height(j)) / 2);
 }
 
+// Section 4.7. A rank and a bound, of r and s bits, have 6 and 5 bits in front of the point.
 bool asks_by_rank(const Map::Rank& rank, const Vertex& i, const Vertex& j, const Parameters& parameters) {
     if (parameters.rank_view == RankView::none)
         return rank.rank > parameters.rank_threshold || rank.bound > parameters.bound_threshold;

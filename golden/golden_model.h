@@ -12,11 +12,11 @@
 /// shares no code with the hardware model. Section numbers below refer to that page.
 namespace tessera::golden {
 
-/// Section 5: the diagonal of the quadrilateral that remains when two edges split; `greatest_rank`: one edge is cut at a
-/// time.
+/// Section 5: which diagonal divides the quadrilateral that remains when two edges split; with `greatest_rank` one edge
+/// is cut at a time.
 enum class Diagonal { shorter, first, second, greatest_rank };
 
-/// Section 4.7: whether errors are those of the surface, or as seen from the eye.
+/// Section 4.7: whether errors are measured on the surface or as seen from the eye.
 enum class RankView { none, per_point, per_pixel };
 
 /// The second diagonal is chosen only if it is shorter by more than this fraction of the first. Of two diagonals of
@@ -37,9 +37,9 @@ struct Parameters {
     double curvature_threshold = 0;      ///< codes times texels, section 4.8
     double mipmap_threshold = 0;         ///< codes, section 4.9
     RankView rank_view = RankView::none;
-    int rank_bits = 0, bound_bits = 0;  ///< of the table's entries, for errors as seen
+    int rank_bits = 0, bound_bits = 0;  ///< of the table's entries; used with errors as seen from the eye
     glm::dvec3 eye{0};                  ///< world
-    /// Distances of vertices are multiples of this, world units; radii are sums of two. 0: of nothing, and no radii.
+    /// Vertex distances are multiples of this (world units), radii sums of two of them. 0: neither exists.
     double distance_step = 0;
     double view_threshold = 0;  ///< pixels
     int generation_limit = 12;  ///< highest generation of an inserted vertex
@@ -51,17 +51,17 @@ struct Parameters {
     double highlight_normal_threshold = 0;
 
     struct Enabled {
-        /// summed_height: or the test in its place.
+        /// summed_height: or the test that replaces it.
         bool normal = true, summed_height = true, view = true, tex_coord = true, generation = true, highlight = false;
     } enabled;
 
     Diagonal diagonal = Diagonal::shorter;
 
     Filter filter = Filter::nearest;  ///< section 2
-    double texel_parts = 1;           ///< section 4.4: the Tex Coord Test compares parts of a texel, so many across it
+    double texel_parts = 1;           ///< section 4.4: parts per texel and axis that the Tex Coord Test distinguishes
 
     /// Inserted texture coordinates are rounded down to multiples of this, in texels; 0: not rounded. Nothing else is
-    /// rounded. At a texel's border the least difference in t selects another texel, so t must match the hardware's.
+    /// rounded. At a texel's border the smallest difference in t selects another texel, so t must match the hardware's.
     double texture_step = 0;
 
     /// World to screen: with p = (P', 1) and w = dot(row_w, p), screen = (dot(row_x, p), dot(row_y, p)) / w
@@ -117,7 +117,7 @@ struct EdgeEvaluation {
 
     double normal_difference = 0;                            ///< largest of the six; NT = it > normal_threshold
     std::int64_t rectangle_width = 1, rectangle_height = 1;  ///< texels, all three rectangles
-    int order = 0;                   ///< with a Rank Table: of the midpoint, 0 if it is no point of the lattice
+    int order = 0;                   ///< with a Rank Table: the midpoint's Map::order(), 0 if it is not a lattice point
     double summed_height = 0;        ///< |2 S(r_ij) - S(r_i) - S(r_j)|, exact
     double summed_height_limit = 0;  ///< SHT = summed_height > it: 4 * threshold, or threshold * area
     double curvature = 0;            ///< with a Curvature Table: CT = it > the threshold; codes times texels
@@ -128,7 +128,7 @@ struct EdgeEvaluation {
     /// highlight_cosine and normal_difference > highlight_normal_threshold.
     double end_cosine = 0, midpoint_cosine = 0;
 
-    /// summed_height_test: or the test in its place.
+    /// summed_height_test: or the test that replaces it.
     bool normal_test = false, summed_height_test = false, view_test = false, tex_coord_test = false,
          generation_test = false, highlight_test = false;
     bool split = false;  ///< (NT or SHT or HT) and VT and TCT and GT
@@ -153,8 +153,8 @@ struct Subdivision {
 };
 Subdivision subdivide(const std::array<bool, 3>& split, const std::array<Vertex, 6>& vertices, Diagonal diagonal);
 
-/// Section 5, `greatest_rank`: of the edges that ask to be split, the one that is cut. edges: of the triangle, in its
-/// order. ask: none or more of them.
+/// Section 5, `greatest_rank`: selects the edge to cut from those that request a split; none if `ask` is empty.
+/// `order`: of the triangle's edges, in their order.
 std::array<bool, 3> edge_to_cut(const std::array<bool, 3>& ask, const std::array<Vertex, 3>& triangle,
                                 const std::array<int, 3>& order);
 
@@ -168,21 +168,21 @@ struct Tessellation {
     std::uint64_t triangles_emitted = 0;
     std::uint64_t edges_evaluated = 0;  ///< three per triangle, emitted or split
     int largest_generation = 0;
-    bool bound_hit = false;  ///< stopped early: the complete mesh has more triangles than the bound
+    bool bound_hit = false;  ///< stopped early: the complete mesh has more triangles than `bound`
 };
 
 /// Sections 4 and 5: tessellates base triangles (the first five members of each vertex are read), depth first in the
-/// children's order. Without the generation test the recursion may not end, so it stops when the triangles emitted and
-/// waiting exceed `bound`; each waiting triangle yields at least one of the mesh.
+/// children's order. Without the generation test the recursion may not end, so it stops when the number of triangles
+/// emitted and waiting exceeds `bound`; each waiting triangle yields at least one of the mesh.
 Tessellation tessellate(const std::vector<std::array<Vertex, 3>>& base, const Map& map, const Parameters& parameters,
                         std::uint64_t bound, const std::function<void(const Triangle&)>& emit);
 
 /// Manhattan length of a world-space vector.
 double manhattan(const glm::dvec3& v);
 
-/// Section 4.7: the distance that stands for the Euclidean length.
+/// Section 4.7: the distance used in place of the Euclidean length.
 double eye_distance(const glm::dvec3& v);
-/// Section 4.7: 4096 log2 of a distance, straight between powers of two, rounded down.
+/// Section 4.7: 4096 log2 of a distance, interpolated linearly between powers of two, rounded down.
 double level(double distance);
 
 }  // namespace tessera::golden

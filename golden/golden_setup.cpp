@@ -8,12 +8,12 @@ namespace {
 
 constexpr double degree = 3.14159265358979323846 / 180;
 
-// The row that gives dot(direction, P' - eye).
+// The row that yields dot(direction, P' - eye).
 glm::dvec4 row_about(const glm::dvec3& eye, const glm::dvec3& direction) {
     return {direction, -glm::dot(direction, eye)};
 }
 
-// log2(value) + offset, with so many of `bits` bits in front of the point, within them.
+// log2(value) + offset in `bits` bits, `integer_bits` of them in front of the point, clamped to their range.
 double on_log_scale(double value, double offset, int integer_bits, int bits) {
     if (bits == 0 || value <= 0)
         return 0;
@@ -37,8 +37,8 @@ View make_view(const Camera& camera, const Placement& placement) {
     view.up = glm::cross(view.backward, view.right);
     view.rounding = 0x1p-49 / glm::length(sideways);
 
-    // A point at depth w and height y above the view axis appears y / (w tan(half the field of view)) half heights over
-    // the viewport's centre. Pixels are square.
+    // A point at depth w and height y above the view axis appears y / (w tan(half the field of view)) half heights
+    // above the viewport's centre. Pixels are square.
     const glm::dvec3 forward = -view.backward;
     const glm::dvec2 centre = camera.viewport / 2.0;
     const double pixels = centre.y / std::tan(camera.field_of_view / 2 * degree);
@@ -50,7 +50,7 @@ View make_view(const Camera& camera, const Placement& placement) {
 
 namespace {
 
-// Pixels that what is 1 high at distance 1 measures in the picture's centre.
+// The size in pixels of an object of height 1 at distance 1 in the centre of the picture.
 double focal_length(const Camera& camera) {
     return camera.viewport.y / 2 / std::tan(camera.field_of_view / 2 * degree);
 }
@@ -59,7 +59,7 @@ double world_per_code(const Scene& scene) {
     return std::abs(scene.placement.scale * (scene.highest - scene.lowest) / scene.highest_code);
 }
 
-// 16 bits of an entry, without limits: a distance may bring the threshold back into them.
+// In units of a 16 bit entry, not clamped: the distance term may bring the threshold back into range.
 double seen_threshold(double octaves, int integer_bits) {
     return std::isnan(octaves) ? -HUGE_VAL : std::ldexp(octaves, 16 - integer_bits);
 }
@@ -97,7 +97,7 @@ Parameters make_parameters(const Scene& scene) {
     result.area = scene.area;
     result.curvature_threshold = scene.curvature_threshold * scene.highest_code;
     result.mipmap_threshold = scene.mipmap_threshold * scene.highest_code;
-    // Beyond 2^20 a threshold never comes back into an entry's 16 bits.
+    // A threshold beyond 2^20 never comes back into the range of an entry's 16 bits.
     const auto rounded_down = [](double threshold) {
         return static_cast<int>(std::floor(std::clamp(threshold, -0x1p20, 0x1p20)));
     };
@@ -109,7 +109,7 @@ Parameters make_parameters(const Scene& scene) {
     result.eye = view.eye;
     result.view_threshold = scene.view_threshold;
     result.generation_limit = scene.generation_limit;
-    // Light opposite to the viewer: there is no half vector, and no normal lies in the highlight.
+    // If the light is opposite the viewer, there is no half vector, and no normal lies in the highlight.
     const glm::dvec3 halfway = unit(scene.light) + view.backward;
     result.half_vector = glm::length(halfway) > 1e-9 ? unit(halfway) : glm::dvec3(0);
     result.highlight_cosine = std::cos(scene.highlight_angle * degree);

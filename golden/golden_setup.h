@@ -48,14 +48,14 @@ struct Scene {
     double normal_threshold = 0;         ///< difference of one component of two unit normals
     double summed_height_threshold = 0;  ///< full-scale texels; with the area option: full scale
     bool area = false;
-    double rank_threshold = 0;          ///< full scale times the square root of a texel; as seen: pixels in its place
+    double rank_threshold = 0;          ///< full scale times the square root of a texel; as seen: pixels
     double bound_threshold = 0;         ///< full scale; as seen: pixels
     double curvature_threshold = 0;     ///< full scale times texels
     double mipmap_threshold = 0;        ///< full scale
-    int rank_bits = 0, bound_bits = 0;  ///< of a Rank Table's entry; 0: it has none
+    int rank_bits = 0, bound_bits = 0;  ///< of a Rank Table's entry; 0 if absent
     RankView rank_view = RankView::none;
     double texel_area = 1;  ///< world units
-    /// A clamped axis does not clamp texture coordinates: the mesh reaches beyond the map.
+    /// Texture coordinates are not clamped on a clamped axis: the mesh extends beyond the map.
     bool beyond_map = false;
     double view_threshold = 0;  ///< pixels
     int generation_limit = 12;
@@ -64,13 +64,13 @@ struct Scene {
     Parameters::Enabled enabled;
     Diagonal diagonal = Diagonal::shorter;
     Filter filter = Filter::nearest;
-    double texel_parts = 1;  ///< across a texel, that the Tex Coord Test compares
+    double texel_parts = 1;  ///< parts per texel and axis that the Tex Coord Test distinguishes
 
     glm::dvec3 light{0, 0, 1};  ///< direction towards the light, world, any length
 };
 Parameters make_parameters(const Scene& scene);
 
-/// The Rank Test's thresholds on their logarithmic scales (4.7), before they are rounded down; 0 for what the table lacks.
+/// The Rank Test's thresholds on their logarithmic scales (4.7), before rounding down; 0 for what the table lacks.
 double rank_threshold(const Scene& scene);
 double bound_threshold(const Scene& scene);
 

@@ -18,10 +18,10 @@
 #include "testbench/machine/inputs.h"
 #include "testbench/machine/simulation.h"
 
-// One process, one job: half donut on the plane of 18 triangles, of 1024 x 1024 texels, about 0.2 million triangles out, or
-// of as many texels a side as the program is called with. Times the golden model, the bare datapath, functional and timed
-// mode of both machines, timed mode by a schedule, and the device on a loosely timed bus, side by side, in edges evaluated
-// and triangles finished per second.
+// One process, one job: half donut on the plane of 18 triangles with a map of 1024 x 1024 texels, about 0.2 million
+// triangles out; an argument sets another number of texels per side. Measures, in edges evaluated and triangles
+// finished per second: the golden model, the bare datapath, functional and timed mode of both machines, timed mode by a
+// schedule, and the device on a loosely timed bus.
 
 namespace tessera {
 namespace {
@@ -73,7 +73,7 @@ void bare_datapath(benchmark::State& state, BareRecursion& bare) {
     report(state, edges, mesh.triangles.size());
 }
 
-/// Functional or timed mode, as the simulation was set up.
+/// Runs one frame in the mode that the simulation was set up with.
 void one_frame(benchmark::State& state, Simulation& simulation) {
     const auto edges_so_far = [&] { return simulation.pipeline.edges_tested(); };
     const std::uint64_t before = edges_so_far();
@@ -93,7 +93,7 @@ void one_frame(benchmark::State& state, Simulation& simulation) {
         state.counters["cycles"] = benchmark::Counter(static_cast<double>(cycles), benchmark::Counter::kAvgIterations);
 }
 
-/// A processor, a memory, and the machine of functional mode as a device.
+/// A processor, a memory, and the machine as a device in functional mode.
 class Platform {
   public:
     explicit Platform(const MachineSetup& setup) : device_("device", setup.registers, design_of(setup)) {
@@ -111,7 +111,7 @@ class Platform {
         processor_.program = [this, &setup](Processor&) { draw_frames(setup); };
     }
 
-    /// Returns whether it succeeded. The first frame copies the tables.
+    /// Returns whether the frame succeeded. The first frame copies the tables.
     bool draw_frame() {
         start_.notify(sc_core::SC_ZERO_TIME);
         sc_core::sc_start();
@@ -189,7 +189,7 @@ int sc_main(int argc, char** argv) {
     const tessera::MachineSetup setup = tessera::benchmark_setup(tessera::DesignPreset::paper, map_side);
     tessera::BareRecursion bare(setup);
     tessera::Simulation simulation(setup, std::uint64_t{1} << 40);
-    // All simulations are of one elaboration; names that exist get a number.
+    // All simulations share one elaboration; SystemC numbers repeated names.
     sc_core::sc_report_handler::set_actions(sc_core::SC_ID_INSTANCE_EXISTS_, sc_core::SC_DO_NOTHING);
     const tessera::MachineSetup timed_setup = tessera::in_timed_mode(setup);
     tessera::Simulation timed_simulation(timed_setup, std::uint64_t{1} << 40);
@@ -200,7 +200,7 @@ int sc_main(int argc, char** argv) {
     const tessera::MachineSetup modern_timed_setup = tessera::in_timed_mode(modern_setup);
     tessera::Simulation modern_timed_simulation(modern_timed_setup, std::uint64_t{1} << 40);
     tlm::tlm_global_quantum::instance().set(sc_core::sc_time(1, sc_core::SC_MS));
-    std::optional<tessera::Platform> platform;  // of memory for the default map
+    std::optional<tessera::Platform> platform;  // its memory is sized for the default map
     if (map_side <= 1024)
         platform.emplace(setup);
     simulation.run();

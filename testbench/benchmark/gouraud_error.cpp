@@ -26,12 +26,12 @@ class TexelTriangle {
         : corners_(corners), area_(area(corners[0], corners[1], corners[2])) {}
 
     bool flat() const { return area_ == 0; }
-    /// Barycentric; they add up to 1, and none is negative inside.
+    /// Barycentric coordinates; they add up to 1, and none is negative inside.
     glm::dvec3 weights(const glm::dvec2& t) const {
         const glm::dvec2 &a = corners_[0], &b = corners_[1], &c = corners_[2];
         return glm::dvec3(area(b, c, t), area(c, a, t), area(a, b, t)) / area_;
     }
-    /// Calls each(centre, weights) for the texel centres inside.
+    /// Calls each(centre, weights) for each texel centre inside.
     template <class Each>
     void each_texel(Each&& each) const {
         if (flat())
@@ -55,7 +55,7 @@ class TexelTriangle {
     double area_;
 };
 
-/// What one base triangle's texels are lit by.
+/// The true displaced normals of one base triangle's texels.
 class TrueNormals {
   public:
     TrueNormals(const MachineSetup& setup, const GoldenInputs& inputs)

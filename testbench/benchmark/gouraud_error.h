@@ -15,19 +15,19 @@ struct Highlight {
     int exponent = 32;                ///< at least 0
 };
 
-/// How far specular light interpolated over each emitted triangle from its three vertices (Gouraud) lies from that of
-/// each texel's own displaced normal. Full scale: the light's intensity where N' = H.
+/// The error of specular light interpolated over each emitted triangle from its three vertices (Gouraud), against the
+/// light of each texel's own displaced normal. Full scale: the light's intensity where N' = H.
 struct GouraudError {
-    double rms = 0;            ///< over the base mesh's texels, all weighing alike
-    double highlight_rms = 0;  ///< over those of them whose own normal lies in the highlight; 0: there are none
+    double rms = 0;            ///< over the base mesh's texels, equally weighted
+    double highlight_rms = 0;  ///< over the texels whose own normal lies in the highlight; 0 if there are none
     double largest = 0;
     std::uint64_t texels = 0, highlight_texels = 0;
-    double highlight_triangles = 0;  ///< emitted triangles a texel in the highlight: their density there
-    double other_triangles = 0;      ///< and elsewhere
+    double highlight_triangles = 0;  ///< emitted triangles per texel in the highlight
+    double other_triangles = 0;      ///< the same, elsewhere
 };
 
-/// Texel centres on the border of two triangles count in both; a triangle without a texel centre counts nowhere.
-/// The true normal: base normal and tangent interpolated over the base triangle, bumped in double precision.
+/// Texel centres on the border of two triangles count in both; a triangle without a texel centre is ignored. The true
+/// normal: base normal and tangent interpolated over the base triangle, bumped in double precision.
 GouraudError measure_gouraud(const EmittedMesh& mesh, const MachineSetup& setup, const GoldenInputs& inputs,
                              const Highlight& highlight);
 

@@ -12,8 +12,8 @@
 #include "testbench/machine/bare_recursion.h"
 #include "testbench/machine/inputs.h"
 
-// What the Highlight Test buys where lighting is per vertex: a job's mesh without it, with it, and without it
-// at a Normal Test threshold that gives as many triangles. One Markdown table on standard output.
+// Compares a job's meshes with lighting per vertex: without the Highlight Test, with it, and without it at a Normal
+// Test threshold that gives as many triangles. Writes one Markdown table to standard output.
 //
 //     tessera_highlight_study [--data FOLDER] [JOB.toml] [TABLE.KEY=VALUE]...
 
@@ -45,8 +45,8 @@ class Study {
         return {mesh.triangles.size(), measure_gouraud(mesh, setup, GoldenInputs(setup), highlight_)};
     }
 
-    /// The largest Normal Test threshold found that gives at least so many triangles without a Highlight
-    /// Test; next to 0 if none does: the other tests allow no more.
+    /// Returns the largest Normal Test threshold found that gives at least `triangles` triangles without a Highlight
+    /// Test, or nearly 0 if none does because the other tests allow no more.
     double threshold_for(std::size_t triangles) const {
         double low = 0, high = job_.tests.normal_threshold;
         for (int step = 0; step < 16; ++step) {

@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The job to bake a map for: the base mesh's, or the default one on a plane of the surface's size.
+/// The job whose base mesh the map is baked for: the given one, or the default job on a plane of the surface's size.
 Job base_job(const BakeRequest& request, const Surface& surface, const fs::path& data_folder) {
     Job job;
     if (request.mesh_job.empty()) {

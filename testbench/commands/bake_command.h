@@ -9,7 +9,7 @@ namespace tessera {
 /// The arguments of `tessera bake`.
 struct BakeRequest {
     std::filesystem::path surface;   ///< surface file (surface_file.h)
-    std::filesystem::path mesh_job;  ///< job whose base mesh the surface lies over; empty: the plane z = 0
+    std::filesystem::path mesh_job;  ///< job with the base mesh under the surface; empty: the plane z = 0
     std::filesystem::path output;    ///< the map
     MapFormat format = MapFormat::pgm;
     int width = 256, height = 256;  ///< texels

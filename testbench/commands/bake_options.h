@@ -10,13 +10,13 @@ class Option;
 
 namespace tessera {
 
-/// The command line of `tessera bake`: what its options stand for.
+/// The command-line options of `tessera bake`.
 class BakeOptions {
   public:
-    /// Declares them. The object must outlive the parsing.
+    /// Declares the options. The object must outlive the parsing.
     void add_to(CLI::App& bake);
 
-    /// Throws InputError with option, value, limit and what to do.
+    /// Throws InputError with option, value, limit and remedy.
     BakeRequest request() const;
 
   private:

@@ -81,7 +81,7 @@ std::function<ExitCode()> read_command_line(int argc, const char* const* argv) {
 
     CLI::App app{"tessera: a SystemC model of hardware that renders displacement maps by adaptive tessellation"};
     app.set_version_flag("--version", std::string("tessera ") + version);
-    app.require_subcommand(0, 1);  // a missing verb is reported below
+    app.require_subcommand(0, 1);  // a missing subcommand is reported below
     app.footer(
         "exit codes: 0 fine, 1 conformance or an invariant violated, 2 bad input or usage, 3 deadlock,\n"
         "            4 a stated resource limit");

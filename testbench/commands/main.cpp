@@ -29,7 +29,7 @@ int sc_main(int argc, char** argv) {
     try {
         const auto command = tessera::read_command_line(argc, argv);
         const ExitCode code = command ? command() : ExitCode::fine;
-        // Output may still be buffered: a full disk may show only now.
+        // Output may still be buffered: a full disk may be detected only here.
         if (std::fflush(stdout) != 0)
             return failed(ExitCode::resource_limit,
                           fmt::format("standard output: {}", std::generic_category().message(errno)).c_str());
@@ -50,10 +50,10 @@ int sc_main(int argc, char** argv) {
     }
 }
 
-// SystemC's own main() prints a banner into every run.
+// SystemC's own main() prints a banner.
 int main(int argc, char** argv) {
     setenv("SYSTEMC_DISABLE_COPYRIGHT_MESSAGE", "1", 0);
-    // A file beyond `ulimit -f` is then an error of write(), which is reported and cleaned up after.
+    // A file beyond `ulimit -f` is then a write() error, which is reported and cleaned up.
     std::signal(SIGXFSZ, SIG_IGN);
     tessera::Interruption::expect();
     return sc_core::sc_elab_and_sim(argc, argv);

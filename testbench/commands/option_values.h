@@ -6,10 +6,10 @@
 
 namespace tessera {
 
-/// Most threads that --jobs may ask for.
+/// Largest value of --jobs.
 inline constexpr unsigned most_jobs = 64;
 
-/// A whole number as a command line gives it: up to six digits; -1 for anything else.
+/// Parses an unsigned command-line integer of up to six digits; -1 for anything else.
 inline int parse_number(const std::string& digits) {
     const bool number = !digits.empty() && digits.size() <= 6 &&
                         std::all_of(digits.begin(), digits.end(), [](char c) { return c >= '0' && c <= '9'; });

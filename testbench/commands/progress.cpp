@@ -51,7 +51,7 @@ void Progress::begin_to_say() {
     }
 }
 
-/// A log that cannot be written must not end a run; fmt::print would throw, in the thread and in the destructor.
+/// A log that cannot be written must not end a run; fmt::print would throw in the thread and in the destructor.
 void Progress::write(const std::string& text) {
     std::fwrite(text.data(), 1, text.size(), display_.file);
     std::fflush(display_.file);

@@ -12,13 +12,13 @@
 
 namespace tessera {
 
-/// Reports the progress of long work. On a terminal: one line that is overwritten. Elsewhere, in a log: a line every
-/// ten seconds since the program began, whether or not show() is called then; none for shorter work. An Interruption
-/// reports it too.
+/// Reports the progress of long work. On a terminal: one line that is overwritten. In a log: one line every ten seconds
+/// since the program began, even without further calls of show(); none for shorter work. An Interruption reports it
+/// too.
 class Progress {
   public:
     using Clock = std::chrono::steady_clock;
-    /// Where it is shown, and the clock.
+    /// Where progress is shown, and the clock.
     struct Display {
         std::FILE* file;
         bool terminal;
@@ -26,19 +26,19 @@ class Progress {
         Clock::time_point (*now)();
     };
 
-    /// On standard error. `before`: the beginning of every line.
+    /// On standard error. `before`: prefix of every line.
     explicit Progress(std::string before = {});
-    /// Elsewhere; lines are written by show() and report_if_due() only.
+    /// On another display; lines are written by show() and report_if_due() only.
     Progress(std::string before, const Display& display);
     ~Progress();
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
 
-    /// part: 0..1 of the work done. Shown on a terminal at most ten times a second.
+    /// part: fraction of the work done, 0..1. A terminal is updated at most ten times per second.
     void show(const std::string& what, double part);
     void clear();
 
-    /// In a log: writes the line if it is due.
+    /// In a log: writes a line if one is due.
     void report_if_due();
 
   private:
@@ -56,10 +56,10 @@ class Progress {
     bool shown_ = false;
     Clock::time_point next_;
 
-    std::mutex mutex_;              // for what is below
-    std::array<char, 400> text_{};  // what show() was last given
-    std::size_t text_size_ = 0;     // 0: nothing since clear()
-    std::int64_t reported_;         // ten-second marks up to which no line is due any more
+    std::mutex mutex_;              // guards the members below
+    std::array<char, 400> text_{};  // last text given to show()
+    std::size_t text_size_ = 0;     // 0: no text since clear()
+    std::int64_t reported_;         // the last ten-second mark for which no line is due any more
     bool stopped_ = false;
     std::condition_variable stop_;
     std::thread reporter_;

@@ -20,7 +20,7 @@ ExitCode rank_command(const RankOrder& order, const fs::path& data_folder) {
     job.hardware.height_test = HeightTest::rank;
     job.hardware.triangulation = Triangulation::greatest_rank;
     job.tests.summed_height = true;
-    job.map.heights = MapHeights::given;  // of many meshes
+    job.map.heights = MapHeights::given;  // fitted heights would suit one mesh, and there are many
     if (order.output.empty())
         throw InputError("--output is empty: name a folder");
     const fs::path folder = order.output;

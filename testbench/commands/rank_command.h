@@ -14,9 +14,9 @@ struct RankOrder {
     std::string output = "runs/rank";   ///< folder
 };
 
-/// Makes the Rank Table of a job's map and base mesh, as a run of it does by itself, and measures the meshes of its
-/// thresholds without a simulation. Writes rank_table.bin, the table as the memory holds it, rank_table.json, what a
-/// loader must know of it, and thresholds.csv, a row a mesh. Throws InputError on wrong usage.
+/// Builds the Rank Table of a job's map and base mesh, as a run of the job does, and measures the meshes of a series of
+/// thresholds without a simulation. Writes rank_table.bin (the memory's contents), rank_table.json (its format, for a
+/// loader) and thresholds.csv (a row per mesh). Throws InputError on wrong usage.
 ExitCode rank_command(const RankOrder& order, const std::filesystem::path& data_folder);
 
 }  // namespace tessera

@@ -23,10 +23,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Where the pictures go.
+/// Output location of the pictures.
 struct Output {
     fs::path folder;
-    std::string file;  ///< the only one's name; empty: named after the view
+    std::string file;  ///< file name of a single picture; empty: named after the view
     std::optional<ExrSamples> exr;
 
     fs::path path_of(PictureView view) const {
@@ -90,10 +90,10 @@ bool asks_for(const RenderRequest& request, PictureView view) {
     return std::find(request.views.begin(), request.views.end(), view) != request.views.end();
 }
 
-/// Measures the run's mesh against the interpolated map, as `tessera compare` does: of a triangle the largest distance
-/// found, either way. About 5 s for 200,000 triangles. The darkest colour stands for --error-scale or, by default, the
-/// error exceeded by 1 % of the area: the largest errors, of a few triangles on a step of the map, would leave no
-/// colours for the rest.
+/// Measures the run's mesh against the interpolated map, as `tessera compare` does: for each triangle the largest
+/// distance in either direction. About 5 s for 200,000 triangles. The darkest colour stands for --error-scale or, by
+/// default, the error exceeded by 1 % of the area: with the largest errors, those of a few triangles on a step of the
+/// map, no colours would be left for the rest.
 void add_errors(const RecordedRun& run, RenderMesh& mesh, ErrorScale& scale) {
     const BaseMesh base = load_mesh(run.job);
     const HeightMap map = load_map(run.job);

@@ -15,19 +15,19 @@ namespace tessera {
 /// The arguments of `tessera render`.
 struct RenderRequest {
     std::filesystem::path run;                              ///< the run's folder
-    std::vector<PictureView> views{PictureView::overview};  ///< each once
+    std::vector<PictureView> views{PictureView::overview};  ///< each view at most once
     PictureOptions picture;
-    std::optional<std::array<double, 3>> eye, target, up;  ///< instead of the run's camera's; model units
+    std::optional<std::array<double, 3>> eye, target, up;  ///< override the run's camera; model units
     std::optional<double> field_of_view;                   ///< vertical, degrees
     std::filesystem::path output;                          ///< FILE.png, FILE.exr or a folder; empty: the run's own
     std::optional<ExrSamples> exr;                         ///< EXR files instead of PNG
 };
 
-/// Reads a run's folder and writes one picture per view: VIEW.png or VIEW.exr in a folder, or the one file asked for.
-/// Prints their names and sizes. The overview by the run's own camera is the run's picture.png, byte for byte.
+/// Reads a run's folder and writes one picture per view: VIEW.png or VIEW.exr in a folder, or the one file requested.
+/// Prints their names and sizes. The overview from the run's own camera is the run's picture.png, byte for byte.
 ///
-/// Throws InputError: no run there, an invalid camera, an output that cannot be written, several views for one
-/// file, a picture larger than picture_options.h allows; ResourceError: memory or disk ran out.
+/// Throws InputError: no run in the folder, an invalid camera, an output that cannot be written, several views for one
+/// file, a picture larger than picture_options.h allows; ResourceError: out of memory or disk space.
 ExitCode render_command(const RenderRequest& request, const std::filesystem::path& data_folder);
 
 /// The names of the files that render writes into a run's folder by default.

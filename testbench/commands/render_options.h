@@ -11,13 +11,13 @@ class Option;
 
 namespace tessera {
 
-/// The command line of `tessera render`: what its options stand for. Ranges are checked here, before a run is read.
+/// The command-line options of `tessera render`. Ranges are checked here, before a run is read.
 class RenderOptions {
   public:
-    /// Declares them. The object must outlive the parsing.
+    /// Declares the options. The object must outlive the parsing.
     void add_to(CLI::App& render);
 
-    /// Throws InputError with option, value, limit and what to do.
+    /// Throws InputError with option, value, limit and remedy.
     RenderRequest request() const;
 
   private:

@@ -27,7 +27,7 @@ constexpr const char* run_file_names[] = {
     "conformance.json", "timing.txt", "queue_levels.csv", "picture.png",     "error.json",     "error.txt",
     "trace.vcd",        "trace.fst",  "timeline.json",    "frames.csv",      "frames.txt"};
 
-/// Whether a run, or a command on it, writes or removes a file of this name.
+/// Whether a run, or a command on a run, writes or removes a file of this name.
 bool is_run_file(const std::string& name) {
     const std::vector<std::string> pictures = picture_names();
     const auto among = [&](const auto& names) {
@@ -47,14 +47,14 @@ void take_away_plain(const fs::path& file, AtomicSet& files) {
         files.take_away(file);
 }
 
-/// Whether a run left this folder.
+/// Whether this folder was written by a run.
 bool is_run_folder(const fs::path& folder) {
     std::ifstream job(folder / "job.toml");
     std::string first;
     return std::getline(job, first) && first == run_job_heading;
 }
 
-/// The names of a run's files that exist in a folder, files or not.
+/// The names of a run's files that exist in a folder, whatever their type.
 std::vector<std::string> names_taken(const fs::path& folder) {
     std::vector<std::string> names(std::begin(run_file_names), std::end(run_file_names));
     const std::vector<std::string> pictures = picture_names();
@@ -65,13 +65,13 @@ std::vector<std::string> names_taken(const fs::path& folder) {
     return names;
 }
 
-/// Absolute, without a slash at its end.
+/// Absolute, without a trailing slash.
 fs::path plain(const fs::path& path) {
     const fs::path absolute = fs::absolute(path).lexically_normal();
     return absolute.has_filename() ? absolute : absolute.parent_path();
 }
 
-/// Whether a run into `output` owns `folder`: the same folder, or a frame in it.
+/// Whether a run into `output` owns `folder`: the same folder, or the folder of one of its frames.
 bool is_of(const fs::path& folder, const fs::path& output) {
     return folder == output || (folder.parent_path() == output && is_frame_name(folder.filename().string()));
 }

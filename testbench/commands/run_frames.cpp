@@ -49,7 +49,7 @@ MachineSetup set_up(const Frame& frame, const BaseMesh& mesh, const HeightMap& m
     }
 }
 
-/// All frames, refused together if one cannot be, with what the host sends for each.
+/// Prepares all frames, with the host's traffic for each. Throws before any of them runs if one is invalid.
 std::vector<Frame> plan_frames(const Job& asked, ResolvedJob& resolved_job) {
     Progress progress;
     progress.show("reading mesh and map", 0);
@@ -73,22 +73,22 @@ std::vector<Frame> plan_frames(const Job& asked, ResolvedJob& resolved_job) {
     return frames;
 }
 
-/// A process for a frame, asked to end when this one has; 0 in it.
+/// Forks a process for a frame, which gets SIGTERM when this one ends. Returns 0 in the child.
 pid_t fork_frame(const Frame& frame) {
-    std::fflush(nullptr);  // what waits in a buffer would be printed twice
+    std::fflush(nullptr);  // buffered output would be printed twice
     const pid_t parent = ::getpid();
     const pid_t child = ::fork();
     if (child < 0)
         throw std::system_error(errno, std::generic_category(), fmt::format("{}: no process for it", frame.text()));
     if (child == 0) {
         ::prctl(PR_SET_PDEATHSIG, SIGTERM);
-        if (::getppid() != parent)  // it ended before it could be watched
+        if (::getppid() != parent)  // the parent ended before prctl()
             ::kill(::getpid(), SIGTERM);
     }
     return child;
 }
 
-/// How a frame's process ended: its exit code or, as shells have it, 128 and the signal that ended it.
+/// Exit status of a frame's process: its exit code or, as in shells, 128 plus the signal number.
 int wait_for(pid_t child, const Frame& frame) {
     int status = 0;
     while (::waitpid(child, &status, 0) < 0)

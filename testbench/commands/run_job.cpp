@@ -42,7 +42,7 @@ namespace tessera {
 
 namespace {
 
-/// Hands the passes of a simulation to a check that runs beside it.
+/// Passes a simulation's decided passes to a check that runs concurrently.
 class PassesInBackground : public tlm::tlm_analysis_if<datapath::TrianglePass> {
   public:
     explicit PassesInBackground(Scoreboard& check)
@@ -55,13 +55,13 @@ class PassesInBackground : public tlm::tlm_analysis_if<datapath::TrianglePass> {
     InBackground<datapath::TrianglePass> passes_;
 };
 
-/// A job's mesh and map, and what the host makes of them.
+/// A job's mesh and map, and the setup made from them.
 struct Loaded {
     Inputs inputs;
     MachineSetup setup;
 };
 
-/// What was mended in the job's mesh and map on the way in joins the setup's own remarks.
+/// Loads the job's inputs. Repairs of its mesh and map are added to the setup's remarks.
 Loaded load(const Job& asked) {
     Loaded loaded{load_inputs(asked), {}};
     const Inputs& inputs = loaded.inputs;
@@ -106,7 +106,7 @@ void write_run_folder(const std::filesystem::path& folder, const Job& job, const
     }
 }
 
-/// The traces' names and windows, and trace.fst if asked for.
+/// Names and windows of the traces; writes trace.fst if requested.
 std::string finish_traces(Traces& traces, const Command& command, const std::filesystem::path& folder,
                           AtomicSet& files) {
     traces.finish();
@@ -128,14 +128,14 @@ const char* verdict(const Checks& checks) {
     return any ? "all checks passed" : "nothing was checked";
 }
 
-/// What a run came to, and what it has to say of it.
+/// Verdict and messages of a run.
 struct Ending {
     ExitCode code;
     std::string text;
 };
 
-/// `name` tells the run from others, on the line that shows its progress. What it leaves takes the place of an earlier
-/// run in `replaced`: job.output.folder, or one above it.
+/// `name` identifies the run in its progress line. Its results replace those of an earlier run in `replaced`:
+/// job.output.folder, or a folder above it.
 Ending run_once(const Job& asked, const Command& command, const std::string& name,
                 const std::filesystem::path& replaced) {
     const std::filesystem::path folder = asked.output.folder;
@@ -225,7 +225,7 @@ Ending run_once(const Job& asked, const Command& command, const std::string& nam
     });
     if (scoreboard) {
         checks.conformance = scoreboard->result();
-        golden.reset();  // 36 bytes a texel
+        golden.reset();  // 36 bytes per texel
     }
     if (work)
         checks.work = work_result(*work, simulation);
@@ -238,7 +238,7 @@ Ending run_once(const Job& asked, const Command& command, const std::string& nam
         checks.setup = check_setup(setup, *golden_job, simulation);
     }
     if (golden_run) {
-        // Golden's own run saturates nothing: with values that did there is nothing to judge it by.
+        // Golden's own run does not saturate, so with saturated values the meshes cannot be compared.
         const datapath::Saturations saturated = Totals(simulation).saturations;
         const bool judged = saturated.displaced_position + saturated.screen_position + saturated.view_distance == 0;
         progress.show("golden model's own run", 0.62);

@@ -31,7 +31,7 @@ double percent(std::uint64_t part, std::uint64_t whole) {
     return whole == 0 ? 0 : 100.0 * static_cast<double>(part) / static_cast<double>(whole);
 }
 
-/// A check's row; one that fails says so.
+/// A check's row, marked if it failed.
 std::string check_row(const char* name, bool passed, const std::string& value) {
     return row(name, (passed ? "" : "FAILED: ") + value);
 }
@@ -103,7 +103,7 @@ std::string height_test_text(const MachineSetup& setup) {
     return text;
 }
 
-/// Repeated work, beside what the mesh needs.
+/// Repeated work, compared with the minimum for this mesh.
 std::string work_rows(const Simulation& simulation, const MeshCounts& mesh) {
     const Totals totals(simulation);
     const std::uint64_t edges = totals.counts.edges_tested;

@@ -8,11 +8,10 @@
 
 namespace tessera {
 
-/// The values that the job left open ("auto"), each with the rule that chose it.
+/// The values that the job left open ("auto"), each with the rule that determined it.
 std::string found_text(const std::vector<FoundValue>& found);
 
-/// The table a run prints: results, cost and checks.
-/// mesh: counts of the simulation's mesh. seconds: run time.
+/// The table printed by a run: results, cost and checks. mesh: counts of the simulation's mesh. seconds: run time.
 std::string summary(const MachineSetup& setup, const Simulation& simulation, const MeshCounts& mesh,
                     const Checks& checks, double seconds);
 

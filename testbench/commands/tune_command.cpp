@@ -33,7 +33,7 @@ namespace fs = std::filesystem;
 constexpr std::uint64_t largest_base_for_error = 2048;
 constexpr int most_rounds = 20;
 
-/// Which tests are searched: the paper's, a Rank or Bound Test, or first one and then the other.
+/// The tests searched: the paper's, a Rank or Bound Test, or one after the other.
 struct Searched {
     bool paper = true, ranks = false;
 };
@@ -125,7 +125,7 @@ Searched choose_tests(const TuneOrder& order, TuneRequest& request) {
     request.space.normal = by_job ? tests.normal : listed("normal");
     request.space.summed_height = by_job ? tests.summed_height : of_heights.has_value();
     request.space.view = by_job ? tests.view : listed("view");
-    // searching a test's threshold switches the test on
+    // searching a test's threshold enables the test
     tests.normal = tests.normal || request.space.normal;
     tests.summed_height = tests.summed_height || request.space.summed_height;
     tests.view = tests.view || request.space.view;
@@ -175,7 +175,7 @@ TuneRequest request_of(const TuneOrder& order, const fs::path& data_folder, Sear
     return request;
 }
 
-/// Checks before the work that a file can be written after it.
+/// Checks before the search that a file can be written after it.
 void check_output(const std::string& option, const fs::path& file) {
     check_folder_of(file, option);
     std::error_code error;
@@ -187,7 +187,7 @@ std::string own_run_folder(const fs::path& job_file) {
     return (fs::path("runs") / job_file.stem()).generic_string();
 }
 
-/// No output may overwrite an input, another output, or an OBJ file that tessera tune did not write.
+/// No output may overwrite an input, another output, or an OBJ file not written by tessera tune.
 void check_places(const TuneOrder& order, const Job& job, const std::vector<fs::path>& written,
                   const fs::path& obj_file) {
     require_inputs_kept(order.output, written, order.job_file, job);
@@ -208,7 +208,7 @@ void check_places(const TuneOrder& order, const Job& job, const std::vector<fs::
     require_inputs_stay(tuned);
 }
 
-/// The job as it will be written: its lattice beside it, a run folder of its own.
+/// The job to be written: its lattice is beside it, and it has a run folder of its own.
 Job finished_job(const TuneResult& result, const fs::path& job_file, const fs::path& obj_file) {
     Job job = result.job;
     if (!result.base_obj.empty())
@@ -281,7 +281,7 @@ ExitCode tune_command(const TuneOrder& order, const fs::path& data_folder) {
                             order.error, measured / unit.model_units));
     }
 
-    // The figures reported are of functional mode's mesh, from the job as it will be written.
+    // The reported figures are those of functional mode's mesh, from the job to be written.
     progress.show("functional mode", 0.98);
     const Job job = finished_job(result, job_file, obj_file);
     Job functional = job;
@@ -301,7 +301,7 @@ ExitCode tune_command(const TuneOrder& order, const fs::path& data_folder) {
                         figures.triangles, result.point.outcome.triangles));
     progress.clear();
 
-    request.goal.error = bound;  // as asked for
+    request.goal.error = bound;  // as requested
     std::string names = job_file.string() + ", " + json_file.string();
     AtomicSet files;
     if (!order.tried.empty()) {

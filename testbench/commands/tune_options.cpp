@@ -15,7 +15,7 @@ namespace tessera {
 
 namespace {
 
-/// Checks the text: the conversion would turn a number beyond 64 bits into another one.
+/// Checks the text, since the conversion would turn a number beyond 64 bits into another one.
 std::string triangles_complaint(const std::string& text) {
     if (text.rfind('-', 0) == 0)
         return text + " is negative";

@@ -11,13 +11,13 @@ class Option;
 
 namespace tessera {
 
-/// The command line of `tessera tune`: what its options stand for.
+/// The command-line options of `tessera tune`.
 class TuneOptions {
   public:
-    /// Declares them. The object must outlive the parsing.
+    /// Declares the options. The object must outlive the parsing.
     void add_to(CLI::App& tune);
 
-    /// Throws InputError with option, value, limit and what to do.
+    /// Throws InputError with option, value, limit and remedy.
     TuneOrder order() const;
 
   private:

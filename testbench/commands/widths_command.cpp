@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Where the two files go.
+/// The two output files.
 struct Output {
     fs::path folder, csv, json;
 };
@@ -99,7 +99,7 @@ WidthRequest request_of(const WidthsOrder& order, const fs::path& data_folder) {
     return request;
 }
 
-/// The first design whose checks failed; empty: none did.
+/// The first design whose checks failed; empty if none.
 std::string first_failure(const WidthSweep& sweep) {
     for (const WidthTable& table : sweep.tables)
         for (const WidthRow& row : table.rows)
@@ -112,7 +112,7 @@ std::string first_failure(const WidthSweep& sweep) {
     return {};
 }
 
-/// Why the widest was refused, if every width of every quantity was; else empty.
+/// If every width of every quantity was refused, the reason for the widest; else empty.
 std::string all_refused(const WidthSweep& sweep) {
     for (const WidthTable& table : sweep.tables)
         for (const WidthRow& row : table.rows)

@@ -22,9 +22,9 @@ struct WidthsOrder {
     unsigned jobs = 1;
 };
 
-/// Sweeps the widths (explore/widths/width_sweep.h), prints the tables, writes them as CSV and JSON. Nothing is written
-/// when it fails. check_failed: a design violated an invariant or disagreed with the golden model beyond rounding.
-/// Throws InputError on wrong usage and where the job itself cannot run.
+/// Sweeps the widths (explore/widths/width_sweep.h), prints the tables, writes them as CSV and JSON. Writes nothing on
+/// failure. Returns check_failed if a design violated an invariant or disagreed with the golden model beyond rounding.
+/// Throws InputError on wrong usage and if the job itself cannot run.
 ExitCode widths_command(const WidthsOrder& order, const std::filesystem::path& data_folder);
 
 }  // namespace tessera

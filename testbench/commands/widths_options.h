@@ -10,13 +10,13 @@ class Option;
 
 namespace tessera {
 
-/// The command line of `tessera widths`: what its options stand for.
+/// The command-line options of `tessera widths`.
 class WidthsOptions {
   public:
-    /// Declares them. The object must outlive the parsing.
+    /// Declares the options. The object must outlive the parsing.
     void add_to(CLI::App& widths);
 
-    /// Throws InputError with option, value, limit and what to do.
+    /// Throws InputError with option, value, limit and remedy.
     WidthsOrder order() const;
 
   private:

@@ -58,7 +58,7 @@ void AtomicFile::commit() {
     if (::fsync(file_) != 0)
         throw_file_error(path_, "writing failed", errno);
     const int file = file_;
-    file_ = -1;  // closed even if close complains
+    file_ = -1;  // closed even if close() fails
     if (::close(file) != 0 && errno != EINTR)
         throw_file_error(path_, "writing failed", errno);
     set_.add(path_);

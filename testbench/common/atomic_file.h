@@ -8,11 +8,11 @@
 
 namespace tessera {
 
-/// A file that appears under its name complete, or not at all: with the AtomicSet that lives, else when commit() has
-/// put every byte on the disk. An older file of the name stays as it was until then.
+/// A file that becomes visible under its name when complete, or not at all: with the current AtomicSet, or without one
+/// when commit() has written all bytes to disk. An existing file of the name stays unchanged until then.
 ///
-/// A program that wants to live with `ulimit -f` must ignore SIGXFSZ. A link is replaced, never followed; a folder or a
-/// device is refused. Errors, with file and the system's reason, as of AtomicSet::open().
+/// A program that must survive `ulimit -f` has to ignore SIGXFSZ. A link is replaced, not followed; a folder or a
+/// device is refused. Errors, with file and the system's reason: as AtomicSet::open().
 class AtomicFile {
   public:
     explicit AtomicFile(const std::filesystem::path& path);
@@ -22,7 +22,7 @@ class AtomicFile {
 
     void write(std::string_view bytes);
 
-    /// To be called once, when all is written.
+    /// Call once, after the last write.
     void commit();
 
   private:
@@ -35,7 +35,7 @@ class AtomicFile {
     std::string buffer_;
 };
 
-/// A whole file at once.
+/// Writes a whole file.
 void write_file(const std::filesystem::path& path, std::string_view content);
 
 }  // namespace tessera

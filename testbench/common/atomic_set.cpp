@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 AtomicSet* living = nullptr;
 
-/// Whether the process that made a staging folder of this name has ended.
+/// Whether the process that created a staging folder of this name has ended.
 bool is_left_over(const std::string& name) {
     static const std::regex ours("\\.tessera-([0-9]{1,9})-[0-9]+\\.part");
     std::smatch parts;
@@ -39,7 +39,7 @@ void remove_left_overs(const fs::path& folder) {
         fs::remove_all(staging, failed);
 }
 
-/// So that the names outlive a power cut too; file systems that cannot do this keep the files all the same.
+/// Makes the names survive a power cut; on file systems that do not support this, the files are written all the same.
 void synchronise(const fs::path& folder) {
     const int handle = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (handle < 0)
@@ -48,17 +48,17 @@ void synchronise(const fs::path& folder) {
     ::close(handle);
 }
 
-/// Renames that can be taken back. False, with errno: one failed.
+/// Renames that can be undone. Functions return false, with errno, on failure.
 class Moves {
   public:
     bool put_aside(const fs::path& file, const fs::path& aside) {
-        return !aside.empty() && (move(file, aside, {aside, file}) || errno == ENOENT);  // another run took it
+        return !aside.empty() && (move(file, aside, {aside, file}) || errno == ENOENT);  // removed by another run
     }
 
-    /// What stands at `to` is kept as `aside`.
+    /// Keeps an existing `to` as `aside`.
     bool replace(const fs::path& from, const fs::path& to, const fs::path& aside) {
         const bool kept = ::link(to.c_str(), aside.c_str()) == 0;
-        // Nothing there; put aside, and another run's stands there since; no links on this file system.
+        // Nothing is at `to`; it was put aside and another run has put a file there; or the file system has no links.
         if (!kept && errno != ENOENT && errno != EEXIST && errno != EPERM && errno != EOPNOTSUPP)
             return false;
         return move(from, to, kept ? Move{aside, to} : Move{to, from});
@@ -120,7 +120,7 @@ void AtomicSet::discard() {
     for (const auto& each : staging_)
         fs::remove_all(each.second, ignored);
     for (auto folder = made_.rbegin(); folder != made_.rend(); ++folder)
-        fs::remove(*folder, ignored);  // unless it holds more
+        fs::remove(*folder, ignored);  // fails if it is not empty
     staging_.clear();
     made_.clear();
 }
@@ -138,8 +138,8 @@ void AtomicSet::make_folder(const fs::path& folder, const std::string& key) {
             throw_file_error(folder, (key + " cannot be made").c_str(), errno);
 }
 
-/// Where the new or the old file of this path lies in the staging folder, which is made if need be. Empty, with errno:
-/// it cannot be.
+/// The path in the staging folder of the new or the old file; creates the folder if necessary. Empty, with errno, on
+/// failure.
 fs::path AtomicSet::in_staging(const char* what, const fs::path& path) {
     static std::atomic<unsigned> number{0};
     const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
@@ -150,7 +150,7 @@ fs::path AtomicSet::in_staging(const char* what, const fs::path& path) {
         do {
             staging = folder / fmt::format(".tessera-{}-{}.part", ::getpid(), number++);
             made = ::mkdir(staging.c_str(), 0777) == 0;
-        } while (!made && errno == EEXIST);  // left by a process that had this number
+        } while (!made && errno == EEXIST);  // left by an earlier process with this id
         if (!made)
             return {};
         staging_[folder] = staging;
@@ -193,7 +193,7 @@ void AtomicSet::commit() {
         const int error = errno;
         const bool all = moves.take_back();
         if (!all)
-            staging_.clear();  // what could not be put back is not to be lost
+            staging_.clear();  // files that could not be restored must not be lost
         throw InputError(
             fmt::format("{}: cannot be replaced: {}; {}: make it and its folder writable, or write to "
                         "another folder",

@@ -8,64 +8,64 @@
 
 namespace tessera {
 
-/// Files that appear under their names together, while others go away: the results of a command. While one lives,
-/// every AtomicFile is written into a staging folder, ".tessera-<process>-<number>.part", until commit() renames them
-/// all. Without commit(), after an error or an Interruption the staging folder goes and all is as it was.
+/// A set of files that become visible together while others are removed: the results of a command. While a set exists,
+/// every AtomicFile is written into a staging folder, ".tessera-<process>-<number>.part", until commit() renames all
+/// files. Without commit(), after an error or an Interruption, the staging folder is removed and nothing has changed.
 ///
-/// The staging folder lies in the folder the files are for: so it is on the same file system, needs no other rights,
-/// and follows links as they do; and several processes can write into one folder. Files are renamed one by one, never
-/// the folder: what stands there under other names is not touched.
+/// The staging folder is inside the target folder: it is on the same file system, needs no other permissions, follows
+/// the same links, and several processes can write into one folder. Files are renamed one by one, never the folder, so
+/// files with other names are not touched.
 ///
-/// A process that is killed leaves its staging folder, which the next set in the folder removes. Killed within commit()
-/// it can leave a part of the files as well: first of those taken away, with none new; then of the new ones. job.toml
-/// appears first and goes last: a folder with any of a run's files has it. A file that is only replaced is never
-/// missing: its name holds the old or the new version.
+/// A killed process leaves its staging folder, which the next set in the folder removes. A process killed within
+/// commit() may also leave a part of the files: first some of the old files without new ones, then some of the new
+/// ones. job.toml appears first and is removed last: a folder with any of a run's files has it. A file that is only
+/// replaced is never missing: its name refers to the old or the new version.
 class AtomicSet {
   public:
-    /// is_current: this is the set that AtomicFile joins. One at a time.
+    /// is_current: AtomicFile joins this set. At most one at a time.
     explicit AtomicSet(bool is_current = true);
     ~AtomicSet();
     AtomicSet(const AtomicSet&) = delete;
     AtomicSet& operator=(const AtomicSet&) = delete;
 
-    /// The one that AtomicFile joins, if any.
+    /// The set that AtomicFile joins, if any.
     static AtomicSet* current();
 
-    /// A folder for the files, with those above it. Those that were not there go away again without commit(). Throws
-    /// like open(); `key`: what names the folder in the message.
+    /// Creates a folder for the files, and its parents. Without commit() those created are removed again. Throws like
+    /// open(); `key`: the setting named in the message.
     void make_folder(const std::filesystem::path& folder, const std::string& key);
 
-    /// Where the file is written that will be `path`.
+    /// The path in the staging folder at which `path` is to be written.
     std::filesystem::path staged(const std::filesystem::path& path);
 
     /// Opens that file for writing. Errors, with `path` and the system's reason: ResourceError if disk, quota or memory
     /// ran out or the disk failed, else InputError (no such folder, not writable).
     int open(const std::filesystem::path& path);
 
-    /// `path` is complete where it is staged: commit() will rename it.
+    /// Marks the staged file of `path` as complete: commit() will rename it.
     void add(const std::filesystem::path& path);
 
-    /// A plain file that goes away when the others appear.
+    /// Removes a regular file when the others appear.
     void take_away(const std::filesystem::path& file);
 
-    /// A folder that does so if nothing is left in it.
+    /// Removes a folder then, if it is empty.
     void take_away_folder(const std::filesystem::path& folder);
 
-    /// To be called once; an interrupt waits for it. Throws InputError, with the name, when a file can neither be
-    /// renamed nor taken away: then all is as it was.
+    /// Call once; signals wait until it returns. Throws InputError, with the name, if a file can be neither renamed nor
+    /// removed: then nothing has changed.
     void commit();
 
   private:
     std::filesystem::path in_staging(const char* what, const std::filesystem::path& path);
     void discard();
 
-    std::map<std::filesystem::path, std::filesystem::path> staging_;  // of each folder
+    std::map<std::filesystem::path, std::filesystem::path> staging_;  // by target folder
     std::vector<std::filesystem::path> made_;                         // innermost last
     std::vector<std::filesystem::path> files_, taken_away_, taken_away_folders_;
-    Interruption::CleanUp clean_up_{[this] { discard(); }};  // the last: none of the above goes before it
+    Interruption::CleanUp clean_up_{[this] { discard(); }};  // last member: destroyed before all of the above
 };
 
-/// Throws what an operation on a file came to: "PATH: WHAT: the system's reason".
+/// Throws the error of a file operation: "PATH: WHAT: the system's reason".
 [[noreturn]] void throw_file_error(const std::filesystem::path& path, const char* what, int error);
 
 }  // namespace tessera

@@ -25,7 +25,7 @@ void write_all(int pipe, const std::string& text) {
     for (std::size_t done = 0; done < text.size();) {
         const ssize_t written = ::write(pipe, text.data() + done, text.size() - done);
         if (written < 0)
-            return;  // nobody reads any more
+            return;  // the reader has closed the pipe
         done += static_cast<std::size_t>(written);
     }
 }
@@ -42,7 +42,7 @@ std::string read_all(int pipe) {
     }
 }
 
-/// Ends at once: nothing that the parent also holds (test sessions, open files) is ended twice.
+/// Exits at once, without destroying what the parent also owns (test sessions, open files).
 [[noreturn]] void do_and_tell(const std::function<std::string()>& work, unsigned most_seconds, int pipe) {
     ::prctl(PR_SET_PDEATHSIG, SIGTERM);
     ::alarm(most_seconds);
@@ -66,7 +66,7 @@ ChildEnd run_in_child(const std::function<std::string()>& work, unsigned most_se
     std::array<int, 2> pipe{};
     if (::pipe(pipe.data()) != 0)
         throw std::system_error(errno, std::generic_category(), "no pipe to a process");
-    std::fflush(nullptr);  // what waits in a buffer would be printed twice
+    std::fflush(nullptr);  // buffered output would be printed twice
     const pid_t child = ::fork();
     if (child < 0)
         throw std::system_error(errno, std::generic_category(), "no process");

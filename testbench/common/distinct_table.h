@@ -7,13 +7,12 @@
 
 namespace tessera {
 
-/// Numbers distinct items from 0 in the order they come. The caller keeps the items. Open addressing, four
-/// bytes a slot, at most half of them taken. Fewer than 2^32 - 1 items.
+/// Numbers distinct items from 0 in order of arrival. The caller stores the items. Open addressing, four bytes per
+/// slot, at most half of the slots used. Fewer than 2^32 - 1 items.
 class DistinctTable {
   public:
-    /// The number of the known item with this hash for which same(number) is true. If there is none, adds one and
-    /// returns its number, the previous size().
-    /// hash_of(number): the hash of a known item.
+    /// Returns the number of the known item with this hash for which same(number) is true. If there is none, adds one
+    /// and returns its number, the previous size(). hash_of(number): the hash of a known item.
     template <class Same, class HashOf>
     std::uint32_t number_of(std::uint64_t hash, const Same& same, const HashOf& hash_of) {
         if (2 * (size_ + 1) > slots_.size())
@@ -26,7 +25,7 @@ class DistinctTable {
 
     std::size_t size() const { return size_; }
 
-    /// Forgets all, and makes room for this many items.
+    /// Removes all items and reserves space for `expected` items.
     void clear(std::size_t expected) {
         std::size_t slots = 16;
         while (slots < 2 * (expected + 1))

@@ -14,8 +14,8 @@
 
 namespace tessera {
 
-/// Takes items in the order they come on a thread of its own, or at once where there is but one core. put() waits while
-/// too many are not yet taken.
+/// Processes items in order on a thread of its own, or immediately on a single core. put() waits while the buffer is
+/// full.
 template <class Item>
 class InBackground {
   public:
@@ -25,7 +25,7 @@ class InBackground {
         try {
             taker_ = std::thread([this] { take_all(); });
         } catch (const std::system_error&) {
-            // No more threads: items are taken at once.
+            // No thread available: items are processed immediately.
         }
     }
     ~InBackground() { end(); }
@@ -47,7 +47,7 @@ class InBackground {
         changed_.wait(lock, [&] { return filled_ < taken_ + blocks_.size(); });
     }
 
-    /// Returns when all items have been taken. Throws what taking one threw; later ones were left out.
+    /// Returns when all items have been processed. Rethrows the exception of an item; later items were skipped.
     void finish() {
         end();
         if (failure_)
@@ -96,8 +96,8 @@ class InBackground {
 
     std::function<void(const Item&)> take_;
     std::array<std::vector<Item>, 8> blocks_;  // a ring: [taken_, filled_) are the taker's, the next is put()'s
-    std::exception_ptr failure_;               // the taker's
-    std::mutex mutex_;                         // for what is below
+    std::exception_ptr failure_;               // of the thread
+    std::mutex mutex_;                         // guards the members below
     std::condition_variable changed_;
     std::size_t filled_ = 0, taken_ = 0;
     bool ended_ = false;

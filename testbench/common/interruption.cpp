@@ -18,13 +18,13 @@ namespace tessera {
 namespace {
 
 struct State {
-    std::mutex mutex;  // held by a Delay, and for good by the thread that ends the process
+    std::mutex mutex;  // held by a Delay, and permanently by the thread that ends the process
     std::vector<const Interruption::CleanUp*> clean_ups;
     std::atomic<bool> arrived{false};
     std::mutex note_mutex;
     std::string note;
 };
-State* state = new State;  // never destroyed: the thread outlives main(). A forked process has its own.
+State* state = new State;  // never destroyed: the thread outlives main(). A forked process has its own copy.
 
 void write_line(int signal) {
     const char* const name = signal == SIGINT ? "SIGINT" : signal == SIGTERM ? "SIGTERM" : "SIGHUP";
@@ -33,7 +33,7 @@ void write_line(int signal) {
         fmt::format("{}tessera: interrupted ({}){}{}; no unfinished file is left\n",
                     ::isatty(STDERR_FILENO) != 0 ? "\r\x1b[K" : "", name, state->note.empty() ? "" : " ", state->note);
     const ssize_t ignored = ::write(STDERR_FILENO, line.data(), line.size());
-    static_cast<void>(ignored);  // there is nobody left to tell
+    static_cast<void>(ignored);  // nothing more can be reported
 }
 
 void end_on_signal(sigset_t signals) {
@@ -65,12 +65,12 @@ void wait_for_signals() {
     try {
         std::thread(end_on_signal, signals).detach();
     } catch (const std::system_error&) {
-        // No thread is to be had: a signal ends the process as it would any other.
+        // No thread available: a signal then has its default effect.
         ::pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
     }
 }
 
-/// Once a signal has arrived, the work goes no further.
+/// Blocks the calling thread once a signal has arrived.
 void stop_if_arrived() {
     while (state->arrived)
         ::pause();

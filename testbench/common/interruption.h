@@ -9,16 +9,16 @@ namespace tessera {
 /// ends the process by the same signal. A thread waits for them with sigwait(), so all of this is ordinary code.
 class Interruption {
   public:
-    /// From now on, in this process and those it forks. To be called first: every thread started later inherits the
-    /// blocked signals, and so does a program that is started, unless it is given another mask. A signal that is
-    /// ignored already (nohup) stays ignored.
+    /// Installs the handling in this process and those it forks. Must be called first: every thread started later
+    /// inherits the blocked signals, and so does a program started from here, unless it is given another mask. A signal
+    /// that is already ignored (nohup) stays ignored.
     static void expect();
 
-    /// What the line will say of the work.
+    /// Sets the progress text of that line.
     static void note(std::string_view progress);
 
-    /// While one lives, a signal waits: for what must not be left half done. Not recursive: a second one in the same
-    /// thread deadlocks.
+    /// Defers signals while an object exists: for operations that must not be interrupted. Not recursive: a second one
+    /// in the same thread deadlocks.
     class Delay {
       public:
         Delay();
@@ -30,7 +30,7 @@ class Interruption {
         std::unique_lock<std::mutex> lock_;
     };
 
-    /// Called on a signal while this lives; never while a Delay lives.
+    /// Calls a function on a signal while the object exists; never during a Delay.
     class CleanUp {
       public:
         explicit CleanUp(std::function<void()> clean_up);

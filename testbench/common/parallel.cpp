@@ -12,7 +12,7 @@
 namespace tessera {
 namespace {
 
-std::size_t chosen_threads = 0;  // 0: one a core
+std::size_t chosen_threads = 0;  // 0: one per core
 thread_local bool sharing = false;
 
 }  // namespace
@@ -65,7 +65,7 @@ void share_chunks(std::size_t chunks, const std::function<void(const NextChunk& 
         while (others.size() + 1 < threads)
             others.emplace_back(run);
     } catch (const std::exception&) {
-        // No more threads, or no memory for them: those there are do the work.
+        // No more threads, or no memory for them: the existing ones do the work.
     }
     run();
     for (std::thread& other : others)

@@ -5,7 +5,7 @@
 
 namespace tessera {
 
-/// splitmix64 (Vigna, public domain): seeded, and the same numbers from every compiler and library.
+/// splitmix64 (Vigna, public domain): seeded; the same numbers with every compiler and library.
 class Random {
   public:
     explicit Random(std::uint64_t seed) : state_(seed) {}
@@ -29,7 +29,7 @@ class Random {
         return static_cast<std::uint32_t>(integer(low, high));
     }
 
-    /// -limit..limit, every magnitude's width equally likely: small values are as interesting as large ones.
+    /// A number in -limit..limit, with every bit width equally likely, since small values matter as much as large ones.
     /// One in sixteen is a limit itself.
     std::int64_t any_size(std::int64_t limit) {
         const std::uint64_t choice = bits();
@@ -41,7 +41,7 @@ class Random {
     bool coin() { return (bits() >> 40 & 1) != 0; }
     bool chance(unsigned percent) { return bits() % 100 < percent; }
 
-    /// low..high, evenly, in steps of 2^-53 of the way.
+    /// Uniform in low..high, in steps of 2^-53 of the range.
     double real(double low, double high) { return low + (high - low) * (static_cast<double>(bits() >> 11) * 0x1p-53); }
 
     template <class Value>

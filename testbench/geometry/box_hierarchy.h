@@ -9,10 +9,10 @@
 
 namespace tessera {
 
-/// Finds the boxes near a point: a tree of boxes in Morton order, four to a node. Its single precision only excludes
+/// Finds the boxes near a point: a tree of boxes in Morton order, four per node. Its single precision only excludes
 /// boxes: they are rounded outwards and radii upwards, so that no box within the radius is missed; the caller
 /// calculates distances in double precision. Queries are thread-safe. Coordinates should be about 1 in size and centred
-/// on 0: far from 0 more boxes than necessary are visited. Memory: about 40 bytes a box.
+/// on 0: far from 0 more boxes than necessary are visited. Memory: about 40 bytes per box.
 class BoxHierarchy {
   public:
     struct Box {

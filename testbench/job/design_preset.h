@@ -3,7 +3,7 @@
 
 namespace tessera {
 
-/// Sets the keys of a preset, hardware.design, to its values. Every other key keeps its own.
+/// Sets the keys of a preset, hardware.design, to its values. All other keys are unchanged.
 void apply_design(Job& job);
 
 }  // namespace tessera

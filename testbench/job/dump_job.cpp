@@ -16,7 +16,7 @@ std::string facts(const Key& key) {
     return fmt::format("{}{}; default {}", unit, range_text(key), toml_value(default_of(key)));
 }
 
-/// The job with its paths as they are from another folder.
+/// The job with its paths rewritten for another folder.
 Job moved_to(const std::filesystem::path& folder, const Job& job) {
     Job moved = job;
     for (const KeyTable& table : job_tables()) {

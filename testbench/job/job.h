@@ -12,7 +12,7 @@ namespace tessera {
 
 enum class MeshSource { plane, cylinder, sphere, file, patches, run, lattice };
 enum class MapSource { half_donut, text, noise, constant, ramp, file };
-/// What the displacement map holds: the map's heights, or those that suit the job's own mesh best.
+/// Contents of the displacement map: the map's heights, or heights fitted to the job's own mesh.
 enum class MapHeights { given, fitted };
 using Addressing = datapath::AddressMode;
 using datapath::HeightTest;
@@ -23,29 +23,29 @@ enum class Culling { none, back };
 using datapath::SummedHeightUnit;
 using Overflow = QueueOverflow;
 enum class Mode { functional, timed };
-/// What counts the cycles of timed mode.
+/// The engine that counts the cycles of timed mode.
 enum class Engine { any, schedule, clocked };
 enum class DesignPreset { paper, modern };
 
-/// Whether a mesh of this source is what mesh.file names.
+/// Whether mesh.file names a mesh of this source.
 constexpr bool reads_file(MeshSource source) {
     return source == MeshSource::file || source == MeshSource::patches || source == MeshSource::run;
 }
 
-/// Which map values displacement.scale spans.
+/// The map values that displacement.scale spans.
 struct MapRange {
     enum class Kind { full, data, given };
     Kind kind = Kind::full;
     double low = 0, high = 1;  // given: in the map's own units (HeightMap::source_units)
 };
 
-/// One run of tessera: what a job file says. Every key's unit, default, range and description are declared
-/// once, in job_keys.cpp and modules/timing/timing_keys.h; the defaults are the initialisers below and make the default
-/// job (the half donut on the plane of 18 triangles).
+/// One run of tessera, as described by a job file. Every key's unit, default, range and description are declared once,
+/// in job_keys.cpp and modules/timing/timing_keys.h; the defaults are the initialisers below and form the default job
+/// (the half donut on the plane of 18 triangles).
 struct Job {
     struct Mesh {
         MeshSource source = MeshSource::plane;
-        std::string file;           // OBJ, Bezier patches or a run's folder, by the source
+        std::string file;           // OBJ, Bezier patches or a run's folder, depending on the source
         std::string fingerprint;    // of the file, see testbench/machine/fingerprint.h; empty: any
         std::int64_t columns = 0;   // quads along u; 0: the source's own (job_keys.cpp)
         std::int64_t rows = 0;      // quads along v; 0: likewise
@@ -55,7 +55,7 @@ struct Job {
         double radius = 1;          // cylinder, sphere
         double height = 2;          // cylinder
 
-        std::filesystem::path path;  // not a key: where `file` is (job_paths.h); empty: none is read
+        std::filesystem::path path;  // not a key: resolved path of `file` (job_paths.h); empty: none is read
     } mesh;
 
     struct Map {
@@ -80,7 +80,7 @@ struct Job {
     Displacement displacement;  // model units; automatic values: testbench/machine/resolve_job.h
 
     struct Frames {
-        std::int64_t count = 1;  // 1: a plain run
+        std::int64_t count = 1;  // 1: an ordinary run
         double first_scale = 0;  // model units; the last frame's is displacement.scale
     } frames;
 
@@ -101,16 +101,16 @@ struct Job {
         QueueOrder queue_order = QueueOrder::fifo;
         std::int64_t queue_watermark = 1;           // host triangles are taken while fewer than this many wait
         std::int64_t queue_capacity = 0;            // triangles on chip; 0: unbounded
-        std::int64_t off_chip_triangles = 1 << 20;  // that may be spilled at a time
+        std::int64_t off_chip_triangles = 1 << 20;  // most triangles spilled at a time
         Overflow queue_overflow = Overflow::spill;
         std::int64_t tests_units = 1;  // Tessellation Tests units: 1 or 3
-        Work work = Work::triangle;    // what goes round
+        Work work = Work::triangle;    // unit of work in the loop
         TestOrder test_order = TestOrder::parallel;
-        bool final_edges = false;         // are not tested again
+        bool final_edges = false;         // final edges are not tested again
         bool one_texel_from_map = false;  // the sum over one texel is its code
         MapFilter displacement_filter = MapFilter::nearest;
-        std::int64_t edge_lanes = 1;    // of families: cheap tests side by side
-        std::int64_t normal_tests = 1;  // likewise: that share the lanes' edges
+        std::int64_t edge_lanes = 1;    // with families: lanes of cheap tests
+        std::int64_t normal_tests = 1;  // likewise: shared by the lanes
         std::int64_t transform_pipelines = 1;
         std::int64_t machines = 1;                      // side by side
         bool direct_memory = true;                      // functional mode reads memories through DMI
@@ -128,8 +128,8 @@ struct Job {
         bool invariants = true;
         double allowed_flips = 0.5;    // percent of edges; more fails the run
         double allowed_triangles = 1;  // percent more or fewer in golden's own run; more fails the run
-        bool work = true;              // no triangle is lost, doubled or altered on its way
-        bool reads = false;            // every table read against what the memory holds
+        bool work = true;              // no triangle is lost, duplicated or altered between units
+        bool reads = false;            // every table read against the memory's contents
     } check;
 
     struct Limits {
@@ -144,14 +144,14 @@ struct Job {
         bool picture = true;
         bool vcd = false;               // timed mode: waveforms
         bool timeline = false;          // timed mode: activity per unit in the Chrome trace format
-        std::int64_t trace_from = 0;    // first cycle of the two
-        std::int64_t trace_to = 10000;  // last cycle of the two
+        std::int64_t trace_from = 0;    // first cycle of both
+        std::int64_t trace_to = 10000;  // last cycle of both
         std::string trace_units;        // only units whose name contains one of these words
     } output;
 
     Mode mode = Mode::timed;
 
-    std::string folder;  // not a key: where the job file lies; empty: the current directory
+    std::string folder;  // not a key: folder of the job file; empty: the current directory
 };
 
 }  // namespace tessera

@@ -7,8 +7,8 @@
 
 namespace tessera {
 
-// The names a job file uses for the enumerators of job.h, besides those of modules/timing/design_choices.h. One switch
-// per enumeration, so that the compiler refuses an enumerator without a name.
+// The names in a job file of the enumerators of job.h, besides those of modules/timing/design_choices.h. One switch per
+// enumeration, so that the compiler reports an enumerator without a name.
 
 constexpr std::string_view name_of(MeshSource value) {
     switch (value) {

@@ -12,10 +12,10 @@
 
 namespace tessera {
 
-/// How a job file writes `automatic`, in quotes.
+/// `automatic` in a job file, in quotes.
 inline constexpr std::string_view auto_word = "auto";
 
-/// A key's value as a job file writes it; a choice is its name.
+/// A key's value as in a job file; a choice is its name.
 using JobValue = std::variant<bool, std::int64_t, double, std::array<double, 2>, std::array<double, 3>, std::string>;
 
 enum class KeyKind {
@@ -30,7 +30,7 @@ enum class KeyKind {
     folder,  ///< a path relative to the current directory
 };
 
-/// What a number, or each component of a vector or span, may be: low .. high, both included.
+/// Range of a number, or of each component of a vector or span: low .. high, both included.
 struct KeyRange {
     double low = -std::numeric_limits<double>::infinity();
     double high = std::numeric_limits<double>::infinity();
@@ -51,18 +51,18 @@ struct Key {
     std::string_view leaf() const;  ///< name without its table
 };
 
-/// A table of a job file; the one without a name holds the top-level keys.
+/// A table of a job file; the one without a name has the top-level keys.
 struct KeyTable {
     std::string name;
     std::string description;
     std::vector<Key> keys;
 };
 
-/// Every key, declared once, in job_keys.cpp and modules/timing/timing_keys.h. Reading, --set, dumping and the key
-/// reference follow from it.
+/// All keys, each declared once, in job_keys.cpp and modules/timing/timing_keys.h. Reading, --set, dumping and the key
+/// reference are derived from them.
 const std::vector<KeyTable>& job_tables();
 
-/// nullptr if there is none of that name.
+/// nullptr if there is no such key.
 const Key* find_key(std::string_view name);
 const KeyTable* find_table(std::string_view name);
 
@@ -71,7 +71,7 @@ JobValue default_of(const Key& key);
 /// "1 .. 2048", "fifo, lifo", "true, false", ...
 std::string range_text(const Key& key);
 
-/// What a value of the key's kind must be: "an integer, 1 .. 2048 quads".
+/// Describes the expected value: "an integer, 1 .. 2048 quads".
 std::string wanted_text(const Key& key);
 
 /// Why the key cannot have this value, in words; empty if it can.
@@ -80,7 +80,7 @@ std::string complaint(const Key& key, const JobValue& value);
 /// Throws InputError with the complaint.
 void set_value(Job& job, const Key& key, const JobValue& value);
 
-/// The first key that is "auto"; empty: none is.
+/// The first key that is "auto"; empty if none is.
 std::string automatic_key(const Job& job);
 
 /// Equal in every key; doubles bit for bit.

@@ -17,11 +17,11 @@ namespace tessera {
 //  * An absolute path stays as it is, everywhere.
 //  * output.folder is relative to the current directory, everywhere.
 
-/// Sets mesh.path and map.path, the paths to open; empty where mesh.file or map.file is. To be called once, when a job
-/// is read and its --set settings are applied. Throws InputError for a `data:` path that leaves the data folder.
+/// Sets mesh.path and map.path, the paths to open; empty if mesh.file or map.file is. Call once, after a job is read
+/// and its --set settings are applied. Throws InputError for a `data:` path that leaves the data folder.
 void resolve_paths(Job& job, const std::filesystem::path& data_folder);
 
-/// The text that means from `to_folder` what `text` means from `from_folder`.
+/// Rewrites `text` so that it means the same from `to_folder` as from `from_folder`.
 std::string rebase_path(const std::string& text, const std::filesystem::path& from_folder,
                         const std::filesystem::path& to_folder);
 

@@ -8,13 +8,13 @@
 #include "testbench/job/nearest_name.h"
 #include "testbench/job/toml_text.h"
 
-// Which values a key may have, and how messages describe them.
+// The values that a key may have, and their descriptions in messages.
 
 namespace tessera {
 
 namespace {
 
-constexpr std::size_t longest_text = 4096;  // bytes; what paths may have on Linux
+constexpr std::size_t longest_text = 4096;  // bytes; the limit of Linux for paths
 
 std::string range_numbers(const Key& key) {
     const std::string range = fmt::format("{} .. {}", key.range.low, key.range.high);
@@ -38,7 +38,7 @@ struct WithUnit {
     std::string operator()(const std::string& range) const { return key.unit == "-" ? range : range + " " + key.unit; }
 };
 
-// Each returns what is wrong, as the end of the sentence "`key` = value ...".
+// Each overload returns the fault, as the end of the sentence "`key` = value ...".
 struct FaultOf {
     const Key& key;
 

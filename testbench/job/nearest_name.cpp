@@ -30,13 +30,13 @@ std::string_view last_part(std::string_view name) {
 }  // namespace
 
 std::string nearest_name(std::string_view mistyped, const std::vector<std::string>& names) {
-    constexpr std::size_t longest = 64;  // nothing longer is near a key, and the distance would take long
+    constexpr std::size_t longest = 64;  // no longer text is near a key, and the distance would take long
     if (mistyped.size() > longest)
         return {};
     std::string best;
     std::size_t best_distance = std::max<std::size_t>(2, mistyped.size() / 4) + 1;
     for (const std::string& name : names) {
-        // A right last part under a wrong table costs one edit.
+        // A correct last part in a wrong table costs one edit.
         const std::size_t by_last_part = edit_distance(last_part(mistyped), last_part(name)) + 1;
         const bool comparable = last_part(mistyped).size() > 2 && by_last_part <= 1 + last_part(name).size() / 4;
         const std::size_t whole = edit_distance(mistyped, name);

@@ -5,7 +5,7 @@
 
 namespace tessera {
 
-/// The name most likely meant by a mistyped one, by edit distance; empty if none is near. A key under a wrong table, or
+/// The name most likely meant by a mistyped one, by edit distance; empty if none is near. A key in a wrong table, or in
 /// none, is near the key with the same last part.
 std::string nearest_name(std::string_view mistyped, const std::vector<std::string>& names);
 

@@ -135,7 +135,7 @@ void choose_source(Job& job, std::string_view table) {
 class TableReader {
   public:
     void read_top_level(const toml::table& table) {
-        // A preset first: the keys it sets may follow it in any order.
+        // A preset is applied first: the keys it sets may follow it in any order.
         if (const auto preset = table["hardware"]["design"]; preset) {
             set_from_node(job_, *find_key(design_key), *preset.node());
             apply_design(job_);
@@ -176,7 +176,7 @@ class TableReader {
 
   private:
     void read_key(const std::string& prefix, const toml::key& name, const toml::node& node) {
-        // Quoted dots are no path: "mesh.rows" = 3 at the top level is not mesh.rows.
+        // Quoted dots do not form a path: "mesh.rows" = 3 at the top level is not mesh.rows.
         const bool quoted_dots = name.str().find('.') != std::string_view::npos;
         const std::string full_name = prefix + std::string(name.str());
         const Key* key = quoted_dots ? nullptr : find_key(full_name);

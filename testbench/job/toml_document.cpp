@@ -15,8 +15,8 @@ namespace {
 
 constexpr std::ptrdiff_t most_dots = 64;
 
-/// The dots of the key in this line that has most. A row of numbers has a dot each, and none of a key: a comma ends a
-/// key unless it is quoted, so a line without quotes is counted from comma to comma.
+/// The largest number of dots in a key of this line. Numbers in an array have a dot each, but are no keys: a comma ends
+/// a key unless it is quoted, so a line without quotes is counted from comma to comma.
 std::ptrdiff_t dots_of_a_key(std::string_view row) {
     const bool quotes = row.find_first_of("\"'") != std::string_view::npos;
     std::ptrdiff_t most = 0, dots = 0;

@@ -1,10 +1,10 @@
 #pragma once
 #include <cstdint>  // toml++ needs it included before
 
-// toml++ takes long to compile: include this in as few files as can be, and toml++ by no other way. Header-only, so
-// that sanitizers see into it, and so that two faults of release 3.3 can be worked around here. Its assertions fail on
-// some faulty files that the parser then refuses itself ("[.]"); with NDEBUG clang would assume that they hold. Its
-// test for whitespace beyond ASCII runs into __builtin_unreachable for most European letters.
+// toml++ takes long to compile: include this header in as few files as possible, and toml++ only through it.
+// Header-only, so that sanitizers instrument it, and two faults of release 3.3 can be worked around here. Its
+// assertions fail on some faulty files that the parser itself refuses later ("[.]"); with NDEBUG clang would assume
+// that they hold. Its test for non-ASCII whitespace reaches __builtin_unreachable for most European letters.
 #undef NDEBUG
 #define TOML_ASSERT(expr) static_assert(true)
 #define TOML_HEADER_ONLY 1
@@ -27,27 +27,27 @@
 
 namespace tessera {
 
-// What is common to the TOML files that we read: jobs and surfaces.
+// Shared by the TOML files that we read: jobs and surfaces.
 
 constexpr std::size_t largest_toml_file = std::size_t{1} << 20;  ///< bytes
 
-/// A file's text, at most one byte more than largest_toml_file. `kind` says what it should be, as in "job file". Throws
-/// InputError if it cannot be read or is no regular file.
+/// A file's text, at most one byte more than largest_toml_file. `kind`: the expected kind, as in "job file". Throws
+/// InputError if it cannot be read or is not a regular file.
 std::string read_toml_text(const std::filesystem::path& path, std::string_view kind);
 
-/// Throws InputError, "NAME:LINE:COLUMN: ...", for what is not TOML, is too large or would crash toml++
+/// Throws InputError, "NAME:LINE:COLUMN: ...", for text that is not TOML, is too large or would crash toml++
 /// (refuse_deep_keys). `kind` as in "a job file".
 toml::table parse_toml(std::string_view text, const std::string& name, std::string_view kind);
 
 /// toml++ builds one nested table per dot of a key, without limit, and frees them recursively: a line of 500,000 dots
-/// overflows the stack. Brackets it limits itself, to TOML_MAX_NESTED_VALUES. Throws InputError for a line that may
+/// overflows the stack. It limits brackets itself, to TOML_MAX_NESTED_VALUES. Throws InputError for a line that may
 /// have a key of more than 64 dots.
 void refuse_deep_keys(std::string_view text, const std::string& name);
 
 /// The value found, for messages: "\"three\", a string".
 std::string found_text(const toml::node& node);
 
-/// Of an integer or a floating-point number.
+/// The value of an integer or a floating-point number.
 std::optional<double> to_number(const toml::node& node);
 
 }  // namespace tessera

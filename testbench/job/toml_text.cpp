@@ -9,7 +9,7 @@ namespace tessera {
 
 namespace {
 
-/// Bytes of the character that the text begins with; 0: it begins with none.
+/// Bytes of the UTF-8 character at the beginning of the text; 0 if it is invalid.
 std::size_t utf8_sequence(std::string_view text) {
     const auto lead = static_cast<unsigned char>(text[0]);
     const std::size_t length = lead < 0x80   ? 1

@@ -80,7 +80,7 @@ void check_map(const Job& job, Faults& faults) {
     }
 }
 
-/// Fitted heights are those of whole texels under vertices, and no sums.
+/// Fitted heights belong to whole texels under vertices, and do not suit sums.
 void check_heights(const Job& job, Faults& faults) {
     if (job.map.heights == MapHeights::given)
         return;
@@ -158,7 +158,7 @@ void check_traces(const Job& job, Faults& faults) {
 void validate(const Job& job) {
     Faults ranges;
     check_ranges(job, ranges);
-    ranges.raise();  // the checks below rely on them
+    ranges.raise();  // the checks below rely on the ranges
 
     Faults faults;
     check_mesh(job.mesh, faults);

@@ -14,7 +14,7 @@
 
 namespace tessera {
 
-using namespace datapath;  // this file is the datapath, strung together
+using namespace datapath;  // this file consists of calls to the datapath
 
 namespace {
 
@@ -23,8 +23,8 @@ TableLayout as_indices(const TableLayout& layout) {
     return {0, layout.columns, layout.rows, 1};
 }
 
-/// Apart from evaluate_edge and not inline, as in the unit (modules/units/edge_tests/normal.h): a design without it
-/// pays for no register.
+/// Separate from evaluate_edge and not inlined, as in the unit (modules/units/edge_tests/normal.h): a design without
+/// the test spends no register on it.
 [[gnu::noinline]] void test_for_highlight(TrianglePass& pass, int k, const TestParameters& tests) {
     EdgeTests& edge = pass.edges[static_cast<std::size_t>(k)];
     if (highlight_test(pass.edge_begin(k).displaced_normal, pass.edge_end(k).displaced_normal, edge.displaced_normal,
@@ -214,7 +214,7 @@ void BareRecursion::transform_normals(Triangle& triangle) {
 
 namespace {
 
-/// Keeps what is finished, and nothing else.
+/// Records finished triangles only.
 struct Emit {
     struct Note {};
     EmittedMesh& mesh;

@@ -11,45 +11,45 @@
 
 namespace tessera {
 
-/// The datapath without SystemC: the same functions on the same tables, called from one loop over a work list. What a
-/// simulation of the machine cannot be faster than; its mesh is the pipeline's, bit for bit (every run checks it).
+/// The datapath without SystemC: the same functions on the same tables, called in one loop over a work list. It bounds
+/// the speed of a simulation of the machine; its mesh is the pipeline's, bit for bit (checked in every run).
 class BareRecursion {
   public:
     /// `setup` must outlive it.
     explicit BareRecursion(const MachineSetup& setup);
 
-    /// So far. The machine normalises N_ij in two units and counts there twice; Lighting is not part of this.
+    /// Counts so far. The machine normalises N_ij in two units and counts each; Lighting is not part of this.
     const datapath::Saturations& saturations() const { return saturations_; }
 
-    /// Tessellates every base triangle; returns the edges evaluated. `mesh` is cleared first, its memory
-    /// kept. Gives up, the mesh incomplete, once `most_edges` have been.
+    /// Tessellates every base triangle; returns the number of edges evaluated. `mesh` is cleared first, but keeps its
+    /// memory. Stops after `most_edges` edges, with the mesh incomplete.
     std::uint64_t run(EmittedMesh& mesh, std::uint64_t most_edges = UINT64_MAX);
 
-    /// The same, shown to a visitor: depth first, one base triangle after the other. Returns the edges evaluated. A
+    /// The same with a visitor: depth first, one base triangle after another. Returns the number of edges evaluated. A
     /// Visitor has
-    ///   Note                  a type: what it keeps with each triangle that waits
-    ///   Note begin(base)      of a base triangle, its vertices complete
-    ///   void decided(pass, children, note)  of every pass, all its edges decided; `children` as datapath::triangulate
-    ///                         gives them, the triangle itself if no edge is split
-    ///   Note child(corners)   of each child of that pass; corners: one of children's
-    ///   void finished(triangle, culled)     of each triangle that is not split, complete
+    ///   Note                  a type: data stored with each waiting triangle
+    ///   Note begin(base)      for a base triangle, its vertices complete
+    ///   void decided(pass, children, note)  for every pass, all its edges decided; `children` as returned by
+    ///                         datapath::triangulate: the triangle itself if no edge is split
+    ///   Note child(corners)   for each child of that pass; corners: one of children's
+    ///   void finished(triangle, culled)     for each triangle that is not split, complete
     template <class Visitor>
     std::uint64_t walk(Visitor& visitor, std::uint64_t most_edges = UINT64_MAX);
 
-    /// What the machine does to a base triangle's vertices on its first pass.
+    /// Completes a base triangle's vertices as the machine does in its first pass.
     void complete_base(datapath::Triangle& triangle);
-    /// All that a pass finds out about edge k, and decides by the setup's registers; the Highlight Test is not in it.
+    /// Evaluates edge k, and decides it by the setup's registers, without the Highlight Test.
     void evaluate_edge(datapath::TrianglePass& pass, int k);
-    /// All three edges with every test, pass.split, and the tests that kept edges whole (Triangle::stopped_by).
+    /// Evaluates all edges with every test, pass.split, and the tests that kept edges whole (Triangle::stopped_by).
     void evaluate(datapath::TrianglePass& pass);
-    /// The design's height test, if it is on.
+    /// The design's height test; false if it is off.
     bool test_heights(const datapath::Vertex& i, const datapath::Vertex& j, datapath::EdgeTests& edge) const;
     /// The Summed Height Test's sum of the map's codes.
     std::uint64_t sum_around(const datapath::TexCoord& t, const datapath::RectangleSize& size) const;
-    /// What the Curvature Test compares, of an edge.
+    /// The value that the Curvature Test compares for an edge.
     std::uint64_t curvature_of(const datapath::TexCoord& i, const datapath::TexCoord& j,
                                const datapath::TexCoord& ij) const;
-    /// Likewise the Mipmap Test.
+    /// The same for the Mipmap Test.
     std::uint64_t mipmap_difference_of(const datapath::TexCoord& i, const datapath::TexCoord& j,
                                        const datapath::TexCoord& ij) const;
 
@@ -59,13 +59,13 @@ class BareRecursion {
     bool test_rank(const datapath::Vertex& i, const datapath::Vertex& j, datapath::EdgeTests& edge) const;
     datapath::Direction map_normal_at(const datapath::TexCoord& t) const;
     std::uint32_t code_at(const datapath::TexCoord& t) const;
-    /// Those of a map that it is read from at t (datapath::map_entries).
+    /// The map's entries that are read at t (datapath::map_entries).
     template <class Entry>
     std::array<std::uint64_t, 4> entries_at(const datapath::TexCoord& t, const datapath::TableLayout& layout,
                                             const std::vector<Entry>& map) const;
 
     const MachineSetup& setup_;
-    std::vector<std::uint64_t> normals_;  // packed as the normal map's entries
+    std::vector<std::uint64_t> normals_;  // packed as in the normal map
     std::vector<std::uint32_t> sums_;     // narrow tables; else wide_sums_
     std::vector<std::uint64_t> wide_sums_;
     datapath::Saturations saturations_;

@@ -5,8 +5,8 @@
 
 namespace tessera {
 
-/// Which tests split a triangle's parent. NT and SHT as the bits of split_by; highlight: neither, the Highlight Test
-/// alone asked for it.
+/// The tests that split a triangle's parent. NT and SHT are bits as in split_by; highlight: only the Highlight Test
+/// requested the split.
 enum class DecidingTest : std::uint8_t { base = 0, normal = 1, summed_height = 2, both = 3, highlight = 4 };
 inline constexpr unsigned deciding_tests = 5;
 

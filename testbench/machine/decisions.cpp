@@ -35,7 +35,7 @@ void Decisions::count(std::uint8_t tests) {
     }
 }
 
-/// An edge that asks while another is cut is counted when it is tested again.
+/// An edge that requests a split while another is cut is counted when it is tested again.
 void Decisions::count(const datapath::TrianglePass& pass) {
     for (unsigned k = 0; k < 3; ++k) {
         const std::uint8_t tests = pass.edges[k].tests;
@@ -44,13 +44,13 @@ void Decisions::count(const datapath::TrianglePass& pass) {
     }
 }
 
-/// A Rank Test answers for an edge without a lattice midpoint by itself.
+/// A Rank Test decides an edge without a lattice midpoint without a read.
 bool Decisions::off_lattice(const datapath::TrianglePass& pass, int edge) const {
     return registers_.formats.height_test == datapath::HeightTest::rank &&
            !has_lattice_midpoint(pass.edge_begin(edge).texture, pass.edge_end(edge).texture, registers_.formats);
 }
 
-/// Edges of at most two texels; or rectangles of one texel, and vertices that have been displaced before this pass.
+/// Edges of at most two texels; or rectangles of one texel, with the ends displaced before this pass.
 bool Decisions::by_codes(const datapath::TrianglePass& pass, int edge) const {
     if (registers_.formats.height_test == datapath::HeightTest::curvature)
         return registers_.tests.summed_height_test &&

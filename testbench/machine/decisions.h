@@ -12,8 +12,8 @@
 
 namespace tessera {
 
-/// What every test says of every edge of a pass, for reports and the mesh file: the same in all designs. Where the
-/// machine does not evaluate a test (Design::test_order, Formats::final_edges), the datapath is called here, at no
+/// The result of every test on every edge of a pass, for reports and the mesh file: the same in all designs. Where the
+/// machine does not evaluate a test (Design::test_order, Formats::final_edges), this calls the datapath, which takes no
 /// cycles.
 class Decisions : public tlm::tlm_analysis_if<datapath::TrianglePass> {
   public:
@@ -31,7 +31,7 @@ class Decisions : public tlm::tlm_analysis_if<datapath::TrianglePass> {
         std::uint64_t stopped_by_generation_alone = 0;
         std::uint64_t stopped_by_several = 0;
     };
-    /// Edges for which the machine evaluated a test.
+    /// Number of edges for which the machine evaluated a test.
     struct Evaluated {
         std::uint64_t normal = 0;
         std::uint64_t summed_height = 0;
@@ -42,7 +42,7 @@ class Decisions : public tlm::tlm_analysis_if<datapath::TrianglePass> {
     /// `setup` must outlive it.
     explicit Decisions(const MachineSetup& setup);
 
-    /// To be called for every decided pass (PassOrTessellate::decided).
+    /// Call for every decided pass (PassOrTessellate::decided).
     void write(const datapath::TrianglePass& pass) override;
 
     const Counts& counts() const { return counts_; }
@@ -58,7 +58,7 @@ class Decisions : public tlm::tlm_analysis_if<datapath::TrianglePass> {
     bool by_codes(const datapath::TrianglePass& pass, int edge) const;
 
     const datapath::Registers& registers_;
-    mutable std::optional<BareRecursion> bare_;  // none: the machine evaluates every test of every edge
+    mutable std::optional<BareRecursion> bare_;  // absent if the machine evaluates every test of every edge
     std::vector<std::uint8_t> split_by_;         // of each pass that split its triangle, by number
     Counts counts_;
     Evaluated evaluated_;

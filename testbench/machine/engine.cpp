@@ -14,7 +14,7 @@ namespace tessera {
 
 namespace {
 
-/// The first key whose value needs the clocked engine; empty: none does.
+/// The first key whose value requires the clocked engine; empty if none does.
 std::string key_without_schedule(const Job& job, const MachineSetup& setup) {
     if (job.output.vcd)
         return "output.vcd";

@@ -3,8 +3,8 @@
 
 namespace tessera {
 
-/// Decides which engine times a run in timed mode, by `timing.engine`: MachineSetup::scheduled and why. InputError if the
-/// job asks for a schedule and its design or its options have none.
+/// Selects the engine for a run in timed mode, according to `timing.engine`: sets MachineSetup::scheduled and the
+/// reason. InputError if the job requests a schedule that its design or its options do not have.
 void choose_engine(const Job& job, MachineSetup& setup);
 
 }  // namespace tessera

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What is read: of a run's folder its mesh. Empty: the job reads none.
+/// The mesh file that the job reads; for a run's folder, its mesh. Empty: the job reads none.
 fs::path mesh_file(const Job& job) {
     return job.mesh.source == MeshSource::run ? job.mesh.path / "mesh.ply" : job.mesh.path;
 }
@@ -36,7 +36,7 @@ void check(const std::string& table, const fs::path& file, const std::string& wa
 std::string fingerprint_of(const fs::path& file) {
     std::error_code error;
     if (!fs::is_regular_file(file, error))
-        return {};  // to open a pipe would wait for its other end
+        return {};  // opening a pipe would wait for its other end
     std::ifstream in(file, std::ios::binary);
     if (!in)
         return {};

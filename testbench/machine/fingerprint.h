@@ -6,14 +6,14 @@
 
 namespace tessera {
 
-/// 64-bit FNV-1a hash of a file's bytes, 16 hexadecimal digits; empty if it cannot be read, which its reader will say.
+/// 64-bit FNV-1a hash of a file's bytes, 16 hexadecimal digits; empty if it cannot be read, which its reader reports.
 std::string fingerprint_of(const std::filesystem::path& file);
 
-/// Fills in mesh.fingerprint and map.fingerprint where a job reads a file and does not say which: what it is run with,
-/// so that its results are never set beside another file's.
+/// Fills in mesh.fingerprint and map.fingerprint of files that a job reads, if absent, so that its results are never
+/// compared with those of another file.
 void record_fingerprints(Job& job);
 
-/// Throws InputError if a file of the job is not the one its fingerprint stands for.
+/// Throws InputError if a file of the job does not match its fingerprint.
 void check_mesh_fingerprint(const Job& job);
 void check_map_fingerprint(const Job& job);
 

@@ -11,7 +11,7 @@ std::uint64_t base_mesh_bytes(const MachineSetup& setup) {
 }
 
 std::vector<std::uint32_t> register_words(const datapath::Registers& registers) {
-    std::vector<std::uint32_t> words(1);  // the first: switches and choices
+    std::vector<std::uint32_t> words(1);  // first word: switches and choices
     int choice_bits = 0;
     datapath::visit_registers(registers, [&](const datapath::Register& field, const auto& values) {
         for (const std::int64_t value : values) {

@@ -11,7 +11,7 @@ std::string numbered(const char* name, std::size_t number) {
     return number == 0 ? name : name + ("_" + std::to_string(number));
 }
 
-/// A schedule times a machine in functional mode.
+/// With a schedule, the machine runs in functional mode.
 Design design_of(const MachineSetup& setup) {
     Design design = setup.design;
     if (setup.scheduled) {

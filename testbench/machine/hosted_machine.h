@@ -21,7 +21,7 @@ inline Host::FillTables tables_of(const MachineSetup& setup) {
 /// all machines share.
 class HostedMachine : private tlm::tlm_analysis_if<datapath::Triangle> {
   public:
-    /// number: of setup.machines. `setup` and `monitor` must outlive it. units: see Pipeline.
+    /// number: below setup.machines. `setup` and `monitor` must outlive it. units: see Pipeline.
     HostedMachine(const MachineSetup& setup, std::size_t number, MeshMonitor& monitor, UnitFactory* units);
 
     Pipeline pipeline;
@@ -31,9 +31,9 @@ class HostedMachine : private tlm::tlm_analysis_if<datapath::Triangle> {
 
     std::optional<Conductor> conductor;  ///< if setup.scheduled
 
-    /// Timed mode: the last cycle in which anything happened.
+    /// Timed mode: the last cycle with any activity.
     std::uint64_t last_cycle() const { return conductor ? conductor->last_cycle() : pipeline.clock.last_cycle(); }
-    /// Timed mode, at the end of a run of so many cycles.
+    /// Timed mode: call at the end of a run of `cycles` cycles.
     void finish(std::uint64_t cycles);
 
     /// Nothing is left to send, and nothing in flight.

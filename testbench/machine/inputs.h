@@ -6,12 +6,12 @@
 
 namespace tessera {
 
-/// Mesh and map of a job, built or read from where its paths (job_paths.h) say.
-/// Throws InputError, ResourceError as the readers do, and InputError on a file of another fingerprint than the job's.
+/// Mesh and map of a job, built, or read from its paths (job_paths.h). Throws InputError and ResourceError as the
+/// readers do, and InputError if a file does not match the job's fingerprint.
 BaseMesh load_mesh(const Job& job);
 HeightMap load_map(const Job& job);
 
-/// Both, and the job with what it leaves to the program found from them.
+/// Both, and the job with its automatic values derived from them.
 struct Inputs {
     BaseMesh mesh;
     HeightMap map;

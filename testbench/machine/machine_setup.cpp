@@ -52,7 +52,7 @@ SceneSettings scene_settings(const Job& job) {
     return settings;
 }
 
-/// Heights for the mesh that the map itself gives. A mesh beyond the job's limit gets none: its run ends there.
+/// Fits heights to the mesh of the unfitted map. A mesh beyond the job's limit is skipped, since its run stops there.
 void fit_heights_to_own_mesh(std::int64_t most_triangles, MachineSetup& setup) {
     EmittedMesh mesh;
     const std::uint64_t most_edges = 6 * static_cast<std::uint64_t>(most_triangles);  // 3 a pass, at most 2 passes each

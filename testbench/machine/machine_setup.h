@@ -9,13 +9,13 @@
 
 namespace tessera {
 
-/// A job made ready for the machine. What the simulation, the golden model and the reports all start from.
+/// A job prepared for the machine: common input of the simulation, the golden model and the reports.
 struct MachineSetup : PreparedScene {
     ModelScale model_scale;  ///< scale and centre
     Design design;
-    unsigned machines = 1;      ///< of that design, side by side; base triangle b goes to machine b mod so many
+    unsigned machines = 1;      ///< of that design, side by side; base triangle b goes to machine b modulo this number
     bool scheduled = false;     ///< timed mode by a schedule (modules/conductor.h), not by the clock
-    std::string engine_reason;  ///< why
+    std::string engine_reason;  ///< reason for the choice
     bool summed_height_bits_chosen = false;  ///< by `auto`
 };
 

@@ -10,7 +10,7 @@
 
 namespace tessera {
 
-/// Records every finished triangle of Pass or Tessellate, of all machines. Stops the simulation at `limit` triangles.
+/// Records every finished triangle of all machines' Pass or Tessellate. Stops the simulation at `limit` triangles.
 class MeshMonitor : public sc_core::sc_object, public tlm::tlm_analysis_if<datapath::Triangle> {
   public:
     MeshMonitor(const char* name, bool back_face_culling, std::uint64_t limit)
@@ -18,7 +18,7 @@ class MeshMonitor : public sc_core::sc_object, public tlm::tlm_analysis_if<datap
 
     void write(const datapath::Triangle& triangle) override { record(triangle, nullptr); }
 
-    /// decisions: of the triangle's machine, for its tags; null: they are the machine's own.
+    /// decisions: of the triangle's machine, for its tags; null: the machine's own tags are complete.
     void record(const datapath::Triangle& triangle, const Decisions* decisions) {
         if (mesh.triangles.size() == limit_) {
             if (!limit_reached_)

@@ -33,8 +33,7 @@ std::array<double, 3> array(const glm::dvec3& v) {
     return {v.x, v.y, v.z};
 }
 
-/// To six digits of a number of the reference's size, so that a job file shows what is meant, whatever libm
-/// computed it.
+/// Rounds to six digits of a number of the reference's size, so that job files are readable and independent of libm.
 double rounded(double value, double reference) {
     if (reference == 0)
         return value;
@@ -55,7 +54,7 @@ struct Box {
     double largest() const { return std::max({extent().x, extent().y, extent().z}); }
 };
 
-/// Of P + h N over the base vertices, for every h given.
+/// Bounding box of P + h N over the base vertices, for all given h.
 Box bounding_box(const BaseMesh& mesh, const std::vector<double>& heights) {
     Box box;
     box.low = box.high = mesh.vertices.front().position + heights[0] * mesh.vertices.front().normal;
@@ -68,7 +67,7 @@ Box bounding_box(const BaseMesh& mesh, const std::vector<double>& heights) {
     return box;
 }
 
-/// The axis in which the mesh is flat; -1: it is not.
+/// The axis along which the mesh is flat; -1 if none.
 int flat_axis(const Box& box) {
     const glm::dvec3 extent = box.extent();
     std::array<int, 3> axes{0, 1, 2};
@@ -76,7 +75,7 @@ int flat_axis(const Box& box) {
     return extent[axes[0]] < flatness * extent[axes[1]] ? axes[0] : -1;
 }
 
-/// Lowest and highest value that occur.
+/// Lowest and highest value of the map.
 std::array<double, 2> values_of(const HeightMap& map) {
     const auto [low, high] = std::minmax_element(map.values.begin(), map.values.end());
     return {static_cast<double>(*low), static_cast<double>(*high)};
@@ -100,7 +99,7 @@ glm::dvec3 find_up(MeshSource source, const BaseMesh& mesh, int flat) {
     return unit_axis(flat, side < 0 ? -1 : 1);
 }
 
-/// Where the front of a model is that stands upright: -y, or z where up is y.
+/// The front direction of a model that stands upright: -y, or z if up is y.
 glm::dvec3 front_of(const glm::dvec3& up) {
     const glm::dvec3 size = glm::abs(up);
     const glm::dvec3 front = size.y > size.x && size.y > size.z ? glm::dvec3(0, 0, 1) : glm::dvec3(0, -1, 0);
@@ -167,7 +166,7 @@ class Resolver {
                                                 reach > span ? ", less because values go beyond map.range" : ""));
     }
 
-    /// Lowest and highest displacement of the first and of the last frame: those between displace by no more.
+    /// Lowest and highest displacement of the first and of the last frame; those in between stay within.
     std::vector<double> heights_of_all_frames() const {
         const Job& job = result_.job;
         Job::Displacement first = job.displacement;
@@ -201,10 +200,10 @@ class Resolver {
         }
         camera.target = array(target);
         const glm::dvec3 view = vector(camera.eye) - target;
-        // Seen from straight above, the front is below.
+        // Seen from directly above, the front is at the bottom.
         const bool along_up = no_up && glm::length(glm::cross(view, up)) <= 1e-6 * glm::length(view);
         if (along_up)
-            up = glm::dvec3(0) - front_of(up);  // without -0
+            up = glm::dvec3(0) - front_of(up);  // avoids -0
         if (no_up)
             camera.up = array(up);
         if (no_eye)
@@ -233,7 +232,7 @@ class Resolver {
         }
     }
 
-    /// Far from the origin, it is the place that takes a value out of its range, not the size.
+    /// Far from the origin, the position and not the size takes a value out of its range.
     std::string place_and_remedy() const {
         const glm::dvec3 centre = base_.centre(), away = glm::abs(centre);
         if (std::max({away.x, away.y, away.z}) <= base_.largest())

@@ -8,11 +8,11 @@
 
 namespace tessera {
 
-/// A value that the job left to the program.
+/// An automatic value.
 struct FoundValue {
     std::string key;    ///< camera.eye
-    std::string value;  ///< as a job file writes it
-    std::string rule;   ///< what it follows from, in words
+    std::string value;  ///< as in a job file
+    std::string rule;   ///< the rule that determined it, in words
 };
 
 /// A job without `automatic` values.
@@ -21,12 +21,12 @@ struct ResolvedJob {
     std::vector<FoundValue> found;
 };
 
-/// Finds camera and displacement's scale from mesh and map, by the rules that job_keys.cpp states, where the job leaves
-/// them automatic. Numbers are rounded to six digits. Throws InputError if a value lies beyond its key's
-/// range. An impossible camera is found later, by validate().
+/// Determines the automatic values of camera and displacement's scale from mesh and map, by the rules given in
+/// job_keys.cpp. Numbers are rounded to six digits. Throws InputError if a value is out of its key's range. An
+/// impossible camera is found later, by validate().
 ResolvedJob resolve_job(const Job& job, const BaseMesh& mesh, const HeightMap& map);
 
-/// Throws std::logic_error that names `user` if the job has an `automatic` value left.
+/// Throws std::logic_error that names `user` if the job still has an `automatic` value.
 void require_resolved(const Job& job, const char* user);
 
 }  // namespace tessera

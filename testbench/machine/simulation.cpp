@@ -12,7 +12,7 @@ namespace tessera {
 
 namespace {
 
-/// Between two returns to the kernel; a stop takes effect after so many.
+/// Cycles between two returns to the kernel; a stop takes effect at the next return.
 constexpr unsigned cycles_ahead = 1024;
 
 std::vector<std::unique_ptr<HostedMachine>> make_machines(const MachineSetup& setup, MeshMonitor& monitor,
@@ -72,7 +72,7 @@ void start() {
 }  // namespace
 
 std::string Simulation::run() {
-    if (only_own_units_ && machines.size() == 1)  // others may act upon time
+    if (only_own_units_ && machines.size() == 1)  // other units may depend on simulation time
         pipeline.clock.run_ahead(cycles_ahead);
     start();
     if (setup.design.transport == Transport::non_blocking) {

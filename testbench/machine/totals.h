@@ -13,7 +13,7 @@ void add_fields(Counts& sum, const Counts& counts, Fields... fields) {
     ((sum.*fields += counts.*fields), ...);
 }
 
-/// The counts of a run, all machines together.
+/// The counts of a run, totals over all machines.
 struct Totals {
     DecidingUnit::Counts counts;
     Decisions::Counts decided;
@@ -29,7 +29,7 @@ struct Totals {
     datapath::Saturations saturations;
 
     explicit Totals(const Simulation& simulation);
-    /// Vertices made for edges that were not split.
+    /// Vertices made for edges that were then not split.
     std::uint64_t thrown_away_vertices() const { return positions - 3 * base_triangles - counts.edges_split; }
 };
 

@@ -16,7 +16,7 @@ namespace tessera {
 namespace {
 
 constexpr std::uint64_t vertex_bytes = 52, face_bytes = 20;
-constexpr double largest_number = 1e40;  // base meshes reach to 3.4e38 (mesh_limits.h), displaced ones not much beyond
+constexpr double largest_number = 1e40;  // base meshes reach 3.4e38 (mesh_limits.h), displaced ones slightly more
 constexpr std::size_t longest_line = 256, most_lines = 64;
 constexpr std::uint64_t most_elements = std::numeric_limits<std::int32_t>::max();  // indices are signed
 
@@ -40,7 +40,7 @@ class PlyFile {
                                      path_.string(), why));
     }
 
-    /// A header's line without its end.
+    /// A header line without its line end.
     std::string line() {
         if (++lines_ > most_lines)
             refuse(fmt::format("the header has more than {} lines", most_lines));
@@ -80,7 +80,7 @@ class PlyFile {
             refuse(fmt::format("the file has {} bytes after its header, which announces {}", size_ - taken_, bytes));
     }
 
-    /// The next record; its numbers are taken from it with take().
+    /// Reads the next record; take() returns its numbers.
     void read(std::size_t bytes) {
         if (!file_.read(record_, static_cast<std::streamsize>(bytes)))
             refuse("the file cannot be read to its end");

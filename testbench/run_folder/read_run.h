@@ -7,20 +7,20 @@
 
 namespace tessera {
 
-/// A run as read from its folder.
+/// A run read from its folder.
 struct RecordedRun {
     std::filesystem::path folder;
-    Job job;            ///< the effective job; its paths resolved, unless read for the mesh alone
-    RecordedMesh mesh;  ///< what it emitted, without culled triangles
+    Job job;            ///< the effective job; its paths are resolved, unless only the mesh was requested
+    RecordedMesh mesh;  ///< the emitted mesh, without culled triangles
 };
 
-/// Reads job.toml and mesh.ply of a folder that `tessera run` left. `data_folder`: what `data:` paths begin at; the
-/// job's mesh and map files must exist, but are not read (inputs.h does that). None: for the mesh alone, and the job's
-/// files need not exist any more.
+/// Reads job.toml and mesh.ply of a run's folder. `data_folder`: folder that `data:` paths refer to; the job's mesh and
+/// map files must exist, but are not read (see inputs.h). Without it, only the mesh is wanted, and the job's files need
+/// not exist.
 ///
-/// Errors: InputError with file and what to do: no such folder, no job.toml (not a run's folder), a folder of frames, a
-/// job that is not valid, mesh or map no longer where the job says, no mesh.ply (output.ply =
-/// false, or the run got stuck), a mesh.ply that is not one (ply_reader.h).
+/// Errors: InputError with file and remedy: no such folder, no job.toml (not a run's folder), a folder of frames, an
+/// invalid job, mesh or map no longer at the job's path, no mesh.ply (output.ply = false, or the run got stuck), an
+/// invalid mesh.ply (ply_reader.h).
 RecordedRun read_run(const std::filesystem::path& folder,
                      const std::optional<std::filesystem::path>& data_folder = std::nullopt);
 

@@ -6,16 +6,16 @@
 
 namespace tessera {
 
-/// The emitted mesh of a run as its mesh.ply holds it (ply_writer.h): displaced, indexed, in model units, culled
-/// triangles left out.
+/// The emitted mesh of a run as in its mesh.ply (ply_writer.h): displaced, indexed, in model units, without culled
+/// triangles.
 struct RecordedMesh {
     struct Triangle {
         std::array<std::uint32_t, 3> vertices{};
         std::uint8_t generation = 0;  ///< of its youngest vertex
         /// Tests that split its parent: 1 Normal, 2 Summed Height, 3 both, plus 32 Highlight; 0 base.
         std::uint8_t split_by = 0;
-        std::uint8_t stopped_by = 0;  ///< sum of 4 View, 8 Tex Coord, 16 Generation: what kept an edge whole
-        std::uint32_t base = 0;       ///< the base triangle it descends from
+        std::uint8_t stopped_by = 0;  ///< sum of 4 View, 8 Tex Coord, 16 Generation: tests that kept an edge whole
+        std::uint32_t base = 0;       ///< its base triangle
     };
 
     std::vector<glm::dvec3> positions;  ///< P', finite

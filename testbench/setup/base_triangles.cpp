@@ -15,7 +15,7 @@ using datapath::Format;
 
 namespace {
 
-/// remedy: for coordinates that do not fit.
+/// remedy: for messages about coordinates that do not fit.
 std::uint32_t to_texture(double coordinate, std::uint32_t size, bool clamp, const Format& format, const char* remedy,
                          bool& clamped) {
     double texels = coordinate * size;
@@ -33,7 +33,7 @@ std::uint32_t to_texture(double coordinate, std::uint32_t size, bool clamp, cons
     return static_cast<std::uint32_t>(fixed);
 }
 
-/// Texture coordinates as near to 0 as whole periods bring them, so that they fit their format.
+/// Moves texture coordinates by whole periods as near to 0 as possible, so that they fit their format.
 BaseMesh with_low_texture(const BaseMesh& mesh, const datapath::MapGeometry& map, const Format& format) {
     const double texels = std::ldexp(1.0, format.bits - 1 - format.fraction);
     return bring_down_texture(

@@ -5,10 +5,10 @@
 
 namespace tessera {
 
-/// In: a mesh in model units, its texture coordinates in maps. Out: positions in world units, normals and tangents of
-/// unit length, texture coordinates in texels (moved by whole periods towards 0 where the map repeats), each in its
-/// format. Triangles in the mesh's order, of generation 0; base: their number. Also sets the scene's counts of what was
-/// dropped, clamped and saturated, and remarks on them; needs its formats and map. Throws InputError if a texture
+/// Input: a mesh in model units, its texture coordinates in maps. Output: positions in world units, normals and
+/// tangents of unit length, texture coordinates in texels (moved by whole periods towards 0 if the map repeats), each
+/// in its format. Triangles are in the mesh's order, of generation 0; base: their index. Also sets the scene's counts
+/// of dropped, clamped and saturated values, with remarks; needs its formats and map. Throws InputError if a texture
 /// coordinate does not fit its format, or no triangle is left.
 void round_base_triangles(const BaseMesh& mesh, const ModelScale& model_scale, PreparedScene& scene);
 

@@ -41,7 +41,7 @@ void check_camera(const CameraSettings& camera, const FormatSettings& formats, F
                   text_of(eye), text_of(target));
     const bool upward = is_automatic(camera.up) || safe_length(up) > 0;
     faults.unless(upward, "`camera.up` = {} has no direction: give it one, such as [0, 0, 1]", text_of(up));
-    // Below a sine of 1e-6 the picture's roll would be rounding error.
+    // Below a sine of 1e-6, rounding errors would determine the picture's roll.
     const auto sine = [](const glm::dvec3& a, const glm::dvec3& b) {
         return safe_length(glm::cross(a, b)) / (safe_length(a) * safe_length(b));
     };
@@ -94,7 +94,7 @@ void check_formats(const FormatSettings& formats, const TestSettings& tests, Fau
                   tests.generation_limit, formats.generation_bits, generations - 1);
 }
 
-/// A coordinate or direction that is set and finite.
+/// Checks that a coordinate or direction is set and finite.
 void check_vector(const char* name, const Vector& v, Faults& faults) {
     faults.unless(std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]),
                   "`{}` is not set, or not finite: set three numbers", name);

@@ -6,8 +6,8 @@
 
 namespace tessera {
 
-/// What is impossible about a camera, formats and a generation limit, each by itself within its range: a sentence each,
-/// with values and remedy. Automatic values are passed over.
+/// Finds faults of a camera, formats and a generation limit whose values are each within their ranges: one sentence per
+/// fault, with values and remedy. Automatic values are skipped.
 std::vector<std::string> setting_faults(const CameraSettings& camera, const FormatSettings& formats,
                                         const TestSettings& tests);
 

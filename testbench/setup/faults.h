@@ -10,7 +10,7 @@
 
 namespace tessera {
 
-/// Collects what is wrong with settings, a line each.
+/// Collects the faults of settings, a line each.
 class Faults {
   public:
     template <typename... Args>
@@ -24,7 +24,7 @@ class Faults {
         else
             unless(value >= least && value <= most, "`{}` = {}: must be {} to {}", name, value, least, most);
     }
-    /// Throws one InputError with all of them, if there are any.
+    /// Throws one InputError with all faults, if there are any.
     void raise() const {
         std::string all;
         for (const std::string& text : texts)

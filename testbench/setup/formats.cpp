@@ -14,7 +14,7 @@ using datapath::Format;
 
 namespace {
 
-/// That the model's integers hold every intermediate: so in all formats within the ranges of their keys.
+/// Checks that the model's integers hold every intermediate; true for all formats within the ranges of their keys.
 void check_intermediates(const datapath::Formats& formats) {
     datapath::visit_intermediates(formats, [](const char* function, const auto& widths) {
         if (const char* const name = datapath::first_too_wide(widths))
@@ -25,7 +25,7 @@ void check_intermediates(const datapath::Formats& formats) {
     });
 }
 
-/// Between texels heights change all the way: from texels' borders midpoints reach the centres only in half texels.
+/// Interpolated heights change everywhere: from texel borders, midpoints reach the centres only in half texels.
 std::int64_t tex_coord_fraction(const FormatSettings& settings, datapath::MapFilter filter) {
     if (settings.tex_coord_fraction >= 0)
         return settings.tex_coord_fraction;

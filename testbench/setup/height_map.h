@@ -14,8 +14,8 @@ struct HeightMap {
     int height = 0;
     std::vector<float> values;
 
-    /// The values of the lowest and the highest displacement code. Integer sources (PGM, PNG) hold sample / maxval and
-    /// have range 0..1; floating-point and uint EXR sources hold their own values and are quantised over the range of
+    /// The values of the lowest and the highest displacement code. Integer sources (PGM, PNG) have values of sample /
+    /// maxval and range 0..1; floating-point and uint EXR sources keep their values and are quantised over the range of
     /// their finite values. A constant map of the latter kind has range_low == range_high: check before dividing by the
     /// difference.
     double range_low = 0;

@@ -31,7 +31,7 @@ ModelScale fit_model(const BaseMesh& mesh, const DisplacementRange& displacement
     const double limit = std::ldexp(1.0, position.bits - position.fraction - 2);
     if (reach > 0)
         result.scale = std::ldexp(1.0, static_cast<int>(std::floor(std::log2(limit / std::max(reach, registers)))));
-    // fewer steps than this across the whole mesh, and the surface is rounding
+    // with fewer steps across the whole mesh, the surface would be mostly rounding error
     constexpr double fewest_steps = 16;
     const double steps = std::ldexp(std::max({half.x, half.y, half.z}) * result.scale, position.fraction);
     if (steps < fewest_steps)
@@ -48,7 +48,7 @@ ModelScale fit_model(const BaseMesh& mesh, const DisplacementRange& displacement
 datapath::DisplacementParameters make_displacement(const DisplacementRange& displacement, const ModelScale& model_scale,
                                                    std::uint32_t highest_code, const Format& position,
                                                    std::uint64_t& saturated) {
-    // d = code / 2^bits reaches 1 - 2^-bits only; S makes up for it
+    // d = code / 2^bits reaches only 1 - 2^-bits; S compensates
     const double codes = static_cast<double>(highest_code);
     const double full = displacement.range * (codes + 1) / codes * model_scale.scale;
     return {to_format(full, position, saturated),

@@ -10,8 +10,8 @@
 
 namespace tessera {
 
-/// From the model's units to the machine's world and back: world = scale * (model - centre), scale a power of two, so
-/// that undoing it costs no precision.
+/// Converts model units to the machine's world and back: world = scale * (model - centre). scale is a power of two, so
+/// that dividing by it is exact.
 struct ModelScale {
     double scale = 1;
     glm::dvec3 centre{0};
@@ -20,7 +20,7 @@ struct ModelScale {
     glm::dvec3 to_model(const glm::dvec3& world) const { return world / scale + centre; }
 };
 
-/// The displacement in model units that the machine's d = 0 and the full range of d stand for.
+/// The displacement in model units at the machine's d = 0, and its full range.
 struct DisplacementRange {
     double bias;   ///< at code 0
     double range;  ///< from code 0 to the highest code
@@ -28,9 +28,9 @@ struct DisplacementRange {
 
 DisplacementRange displacement_range(const DisplacementSettings& settings, const HeightMap& map);
 
-/// Centre and scale that put the displaced model into half of the position's range: nothing saturates, and the eye of a
-/// usual camera has room. `map` is the map's name in messages. Throws InputError if the displacement is so large that
-/// the mesh spans too few steps of the format.
+/// Chooses centre and scale so that the displaced model fits half of the position's range: nothing saturates, and the
+/// eye of a usual camera has room. `map`: the map's name in messages. Throws InputError if the displacement is so large
+/// that the mesh spans too few steps of the format.
 ModelScale fit_model(const BaseMesh& mesh, const DisplacementRange& displacement, const datapath::Format& position,
                      const std::string& map);
 

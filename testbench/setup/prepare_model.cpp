@@ -23,7 +23,7 @@ namespace tessera {
 
 namespace {
 
-/// Which keys to change where a value does not fit its register.
+/// The keys to change if a value does not fit its register.
 const char* remedy(std::string_view register_name) {
     if (register_name == "map.width" || register_name == "map.height")
         return "use a smaller map or raise formats.texture_integer";
@@ -32,7 +32,7 @@ const char* remedy(std::string_view register_name) {
     return "change the value or formats that it is made of";
 }
 
-/// That every value fits its register.
+/// Checks that every value fits its register.
 void check_registers(const datapath::Registers& registers) {
     datapath::visit_registers(registers, [](const datapath::Register& field, const auto& values) {
         for (const std::int64_t value : values)
@@ -42,13 +42,13 @@ void check_registers(const datapath::Registers& registers) {
     });
 }
 
-/// World units of a distance's LSB.
+/// Size of a distance's LSB in world units.
 double distance_step(const datapath::Formats& formats) {
     return std::ldexp(1.0, -formats.view_distance.fraction);
 }
 
-/// For radii, which only a bound as the viewer sees it has. A vertex's position is off by less than 8 LSB, half a one for
-/// each of up to 15 generations and for P', its distance's last place by 1; of four of them.
+/// Only for radii, which exist with a bound as seen. A vertex's position is off by less than 8 LSB, half of one for
+/// each of up to 15 generations and for P', and its distance by 1 in the last place; this applies to four vertices.
 std::optional<RadiusScale> radius_scale(const PreparedScene& scene) {
     const datapath::Formats& formats = scene.registers.formats;
     if (!formats.distances || formats.bound_bits == 0)
@@ -59,7 +59,7 @@ std::optional<RadiusScale> radius_scale(const PreparedScene& scene) {
                        4 * (1 + 8 * root_of_three * position / step)};
 }
 
-/// What keeps a bound from holding, on the surface or in the picture; a base mesh's own part: remark_on_base.
+/// Adds remarks on conditions that invalidate a bound, on the surface or in the picture; for the mesh: remark_on_base.
 void remark_on_bound(const SceneSettings& settings, const BaseMesh& mesh, PreparedScene& scene) {
     const datapath::Formats& formats = scene.registers.formats;
     if (formats.height_test != datapath::HeightTest::rank || formats.bound_bits == 0)
@@ -80,7 +80,7 @@ void remark_on_bound(const SceneSettings& settings, const BaseMesh& mesh, Prepar
            "formats.bound_bits leave no room for all that depends on one another; raise them");
 }
 
-/// What the Rank Test cannot do on a base mesh, and what can.
+/// Adds remarks on the Rank Test's limits on a base mesh, and on remedies.
 void remark_on_base(const std::vector<TextureTriangle>& base, PreparedScene& scene) {
     const RankTables& tables = scene.rank_tables;
     std::vector<std::string> limits;
@@ -112,7 +112,7 @@ void rank_lattice(PreparedScene& scene, const std::vector<TextureTriangle>& base
     remark_on_base(base, scene);
 }
 
-/// The height test's table, unless it is written from the map alone.
+/// Makes the height test's table, unless it is written from the map alone.
 void make_height_table(const TestSettings& tests, PreparedScene& scene) {
     datapath::Registers& registers = scene.registers;
     std::vector<TextureTriangle> base;

@@ -16,18 +16,18 @@
 
 namespace tessera {
 
-/// Host values that did not fit their format and were saturated. fit_model() leaves room, so that none should.
+/// Host values that did not fit their format and were saturated. fit_model() leaves room, so normally there are none.
 struct InputSaturations {
     std::uint64_t position = 0;   ///< components of base vertices
     std::uint64_t normal = 0;     ///< components of base vertices' normals and tangents
     std::uint64_t registers = 0;  ///< displacement's scale and bias, directions of view and light
 };
 
-/// What the host of the machine has: everything rounded to the hardware's formats.
+/// The host's data: everything rounded to the hardware's formats.
 struct PreparedScene {
     datapath::Registers registers;
     QuantisedMap map;
-    /// What the displacement map holds in place of the map's codes; empty: these.
+    /// The displacement map's contents if they differ from the map's codes; else empty.
     std::vector<std::uint16_t> fitted_heights;
     std::vector<datapath::Triangle> base_triangles;
     RankTables rank_tables;          ///< with a Rank Test
@@ -42,20 +42,20 @@ struct PreparedScene {
     std::array<double, 2> texel_size{1, 1};  ///< world size of a texel along u and v
 
     std::uint64_t largest_rectangle_sum = 0;  ///< bound on any rectangle's sum over this mesh, in codes
-    std::uint64_t base_dropped = 0;           ///< triangles that rounding made name one vertex twice
+    std::uint64_t base_dropped = 0;           ///< triangles of which two vertices coincide after rounding
     std::uint64_t texture_clamped = 0;        ///< vertices whose u or v lay outside a clamped map
     InputSaturations input_saturations;
     std::vector<std::string> remarks;  ///< one sentence each, for a report
 
-    /// What the displacement map holds. All other tables are made of `map`.
+    /// The displacement map's contents. All other tables are made from `map`.
     const std::vector<std::uint16_t>& heights() const { return fitted_heights.empty() ? map.codes : fitted_heights; }
 };
 
-/// Takes bytes that belong at an address of the machine's memory.
+/// Receives bytes for an address of the machine's memory.
 using TableSink = std::function<void(std::uint64_t address, const unsigned char* bytes, std::size_t count)>;
 
-/// The displacement map, the normal map and the height test's table, row by row, little endian, where the registers'
-/// layouts place them.
+/// Writes the displacement map, the normal map and the height test's table, row by row, little endian, at the addresses
+/// of the registers' layouts.
 void write_tables(const PreparedScene& scene, const TableSink& sink);
 
 }  // namespace tessera

@@ -25,7 +25,7 @@ namespace {
 
 struct Neighbours {
     std::uint32_t before, after;
-    double distance;  // in texels; 0: the axis has one texel only
+    double distance;  // in texels; 0: the axis has only one texel
 };
 
 Neighbours neighbours(std::uint32_t index, std::uint32_t size, datapath::AddressMode mode) {

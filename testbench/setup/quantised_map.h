@@ -10,8 +10,8 @@
 
 namespace tessera {
 
-/// The displacement map in the hardware's format: unsigned codes of `bits` bits, bottom row first. Code 0 stands for
-/// the height map's range_low, code 2^bits - 1 for its range_high.
+/// The displacement map in the hardware's format: unsigned codes of `bits` bits, bottom row first. Code 0 represents
+/// the height map's range_low, code 2^bits - 1 its range_high.
 struct QuantisedMap {
     datapath::MapGeometry geometry;
     int bits = 16;

@@ -10,7 +10,7 @@ namespace tessera {
 /// value * 2^fraction, to nearest, ties to even.
 std::int64_t to_fixed(double value, int fraction);
 
-/// The same in a format; what lies beyond it becomes the nearest value of the format, and is counted in `saturated`.
+/// The same for a format; values out of range become the nearest value in range and are counted in `saturated`.
 std::int32_t to_format(double value, const datapath::Format& format, std::uint64_t& saturated);
 
 /// The same by component, without normalising.

@@ -8,7 +8,7 @@
 
 namespace tessera {
 
-/// A number, or vector, that has yet to be set.
+/// A number, or vector component, that has not been set.
 inline constexpr double automatic = std::numeric_limits<double>::quiet_NaN();
 inline constexpr std::array<double, 3> automatic_vector{automatic, automatic, automatic};
 
@@ -19,13 +19,13 @@ inline bool is_automatic(const std::array<double, 3>& value) {
     return std::isnan(value[0]) && std::isnan(value[1]) && std::isnan(value[2]);
 }
 
-/// From map value to height along the normal.
+/// Conversion of a map value to a height along the normal.
 struct DisplacementSettings {
     double scale = automatic;  ///< model units from the map's low to its high end
     double bias = 0;           ///< model units at the low end
 };
 
-/// The view, on which the View Test depends.
+/// The camera, used by the View Test.
 struct CameraSettings {
     std::array<double, 3> eye = automatic_vector;     ///< model units
     std::array<double, 3> target = automatic_vector;  ///< model units
@@ -36,22 +36,22 @@ struct CameraSettings {
     std::int64_t viewport_height = 768;
 };
 
-/// What the Rank Test's thresholds measure.
+/// The measure of the Rank Test's thresholds.
 enum class RankView : std::uint8_t {
-    none,       ///< errors of the surface, from wherever it is seen
-    per_point,  ///< as seen: at every point of the map alike
-    per_pixel,  ///< as seen: of every pixel that a point covers
+    none,       ///< errors of the surface, independent of the view
+    per_point,  ///< as seen: equal weight for every point of the map
+    per_pixel,  ///< as seen: equal weight for every pixel covered
 };
 
-/// What a block of a mipmap has for its height. The paper names both without more detail (2.3.1): "mipmapping ... but with
-/// a maximal filter".
+/// The height of a block of a mipmap. The paper names both without more detail (2.3.1): "mipmapping ... but with a
+/// maximal filter".
 enum class MipmapFilter : std::uint8_t {
     mean,    ///< of its texels, rounded to nearest, halves up
     maximum  ///< of its texels
 };
 
-/// The edge tests: split = (normal or summed_height or highlight) and view and tex_coord and generation. summed_height: or
-/// the test in its place (SceneSettings::height_test).
+/// The edge tests: split = (normal or summed_height or highlight) and view and tex_coord and generation. summed_height:
+/// or the test that replaces it (SceneSettings::height_test).
 struct TestSettings {
     bool normal = true;
     double normal_threshold = 0.12;  ///< difference of one component of two unit normals
@@ -74,14 +74,14 @@ struct TestSettings {
     double highlight_normal_threshold = 0.05;  ///< difference of one component of two unit normals
 };
 
-/// Fixed-point formats; bits count the sign where there is one. Ranges: datapath::FormatLimits.
+/// Fixed-point formats; bits include the sign, if any. Ranges: datapath::FormatLimits.
 struct FormatSettings {
     std::int64_t position_bits = 32, position_fraction = 16;
     std::int64_t normal_bits = 16, normal_fraction = 14;
     std::int64_t texture_integer = 12, texture_fraction = 12;
-    std::int64_t tex_coord_fraction = -1;  ///< what the Tex Coord Test compares; -1: 1 with a bilinear filter, else 0
+    std::int64_t tex_coord_fraction = -1;  ///< bits the Tex Coord Test compares; -1: 1 if bilinear, else 0
     std::int64_t displacement_bits = 16;
-    std::int64_t summed_height_bits = 0;  ///< 0: the narrowest of 32, 40, 48 the mesh needs
+    std::int64_t summed_height_bits = 0;  ///< 0: the narrowest of 32, 40, 48 that the mesh needs
     std::int64_t screen_bits = 24, screen_fraction = 8;
     std::int64_t generation_bits = 4;
     std::int64_t rank_bits = 8;   ///< of the Rank Table's entries; 0: no ranks
@@ -90,18 +90,18 @@ struct FormatSettings {
 
 struct LightSettings {
     std::array<double, 3> direction{0.3, -0.4, 0.866};  ///< towards the light, world space, of any length
-    double ambient = 0.2;                               ///< of full scale, falls on every surface
+    double ambient = 0.2;                               ///< fraction of full scale, on every surface
 };
 
-/// What the registers follow from, beside mesh and map.
+/// The inputs of the registers besides mesh and map.
 struct SceneSettings {
     DisplacementSettings displacement;
     CameraSettings camera;
     TestSettings tests;
     FormatSettings formats;
     LightSettings light;
-    datapath::AddressMode address_u = datapath::AddressMode::clamp;  ///< beyond the map's left and right border
-    datapath::AddressMode address_v = datapath::AddressMode::clamp;  ///< beyond its lower and upper border
+    datapath::AddressMode address_u = datapath::AddressMode::clamp;  ///< outside the map's left and right border
+    datapath::AddressMode address_v = datapath::AddressMode::clamp;  ///< outside its lower and upper border
     datapath::Triangulation triangulation = datapath::Triangulation::shorter;
     bool back_face_culling = false;
     datapath::HeightTest height_test = datapath::HeightTest::summed_height;

@@ -13,18 +13,18 @@ namespace tessera {
 
 namespace {
 
-/// A threshold on its way into a register.
+/// A threshold to be converted to a register.
 struct Threshold {
     const char* key;
     double value;
-    bool used;     // by a test that is on
+    bool used;     // by an enabled test
     double scale;  // register's value per unit of the threshold
     double limit;  // the register's highest value
     const char* format_key;
 };
 
-/// Rounded down. Refused is what does not fit, and what would be 0 without being meant to: a test against 0
-/// asks another question, and rounding answers it.
+/// Rounds down. Refuses a value that does not fit, and one that would become 0 although it is not: a test against 0 has
+/// a different meaning, and its result depends on rounding.
 std::uint64_t to_register(const Threshold& threshold) {
     const double fixed = std::floor(threshold.value * threshold.scale);
     if (fixed > threshold.limit)
@@ -105,14 +105,14 @@ bool set_highlight_test(const TestSettings& tests, const glm::dvec3& to_light, c
     constexpr double pi = 3.14159265358979323846;
     registers.highlight_test = true;
     const glm::dvec3 sum = to_light + to_viewer;
-    // Shorter, and its direction would be that of rounding errors.
+    // With a shorter vector, rounding errors would determine the direction.
     constexpr double shortest = 1e-9;
     const bool is_there = glm::length(sum) > shortest;
     if (is_there) {
         const datapath::Direction half = to_direction(glm::normalize(sum), formats.normal, saturated);
         registers.half_vector = {half.x, half.y, half.z};
     }
-    // To nearest, so that the cosines of 0, 60 and 90 degrees are what they should be.
+    // Rounded to nearest, so that the cosines of 0, 60 and 90 degrees are exact.
     registers.highlight_cosine = to_fixed(std::cos(tests.highlight_angle * pi / 180), 2 * formats.normal.fraction);
     registers.highlight_normal_threshold =
         to_normal_register("tests.highlight_normal_threshold", tests.highlight_normal_threshold, true, formats);

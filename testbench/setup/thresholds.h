@@ -8,14 +8,14 @@
 
 namespace tessera {
 
-/// In: [tests]. Out: the edge tests' registers, thresholds rounded down to their formats; without the Highlight Test's.
-/// Throws InputError if a threshold lies beyond its register, or below its step without being 0. view: for the Rank Test,
-/// if it judges errors as seen.
+/// Input: [tests]. Output: the edge tests' registers, without the Highlight Test's; thresholds are rounded down to
+/// their formats. Throws InputError if a threshold is beyond its register, or below its step without being 0. view: for
+/// the Rank Test, if it measures errors as seen.
 datapath::TestParameters make_tests(const TestSettings& tests, const datapath::Formats& formats,
                                     const ViewedScale& view = {});
 
-/// Sets the Highlight Test's registers. In: the directions to light and viewer, unit length, world space. False: they
-/// are opposite, and the test never asks for a split. Throws as make_tests() does.
+/// Sets the Highlight Test's registers. Input: the directions to light and viewer, unit length, world space. Returns
+/// false if they are opposite: the test then never requests a split. Throws as make_tests() does.
 bool set_highlight_test(const TestSettings& tests, const glm::dvec3& to_light, const glm::dvec3& to_viewer,
                         const datapath::Formats& formats, datapath::TestParameters& registers,
                         std::uint64_t& saturated);

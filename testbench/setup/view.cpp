@@ -66,7 +66,7 @@ datapath::TransformParameters make_transform(const CameraSettings& camera, const
     result.row_x = row(x, std::ldexp(1.0, -result.exponent));
     result.row_y = row(y, std::ldexp(1.0, -result.exponent));
     result.row_w = row(forward, 1);
-    // No w reaches 2^62: a near plane there has everything behind it, as one further away would.
+    // No w reaches 2^62: everything is behind a near plane there, as with one farther away.
     result.near_plane = static_cast<std::int64_t>(
         std::min(std::ldexp(camera.near_plane * model_scale.scale, fraction + position_fraction), std::ldexp(1.0, 62)));
     for (std::size_t k = 0; formats.distances && k < 3; ++k)

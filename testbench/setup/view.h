@@ -15,18 +15,18 @@ struct ViewAxes {
 
 ViewAxes view_axes(const CameraSettings& camera);
 
-/// Pixels that what is 1 high at distance 1 measures, in the picture's centre.
+/// The size in pixels of an object of height 1 at distance 1 in the picture's centre.
 double focal_length(const CameraSettings& camera);
 /// 1 / cosine of the angle between the view's axis and a corner of the picture.
 double corner_secant(const CameraSettings& camera);
 
-/// In: a camera in model units, resolved. Out: Transform's registers: world to pixels (x right, y up, (0, 0) the
+/// Input: a resolved camera in model units. Output: Transform's registers: world to pixels (x right, y up, (0, 0) the
 /// viewport's lower left corner), the near plane, and the rotation of normals to view space; saturated entries of the
 /// rotation are counted. Throws InputError if the eye is too far from the mesh's centre for Transform's sums.
 datapath::TransformParameters make_transform(const CameraSettings& camera, const ModelScale& model_scale,
                                              const datapath::Formats& formats, std::uint64_t& saturated);
 
-/// The format of distances along the view axis: as wide as a position; the point moved up until the distance of the
+/// The format of distances along the view axis: a position's width, with the point moved until the distance of the
 /// farthest corner of the position's range fits.
 datapath::Format view_distance_format(const datapath::TransformParameters& transform, const datapath::Format& position);
 

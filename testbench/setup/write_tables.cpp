@@ -5,7 +5,7 @@ namespace tessera {
 
 namespace {
 
-/// Row by row. entry(x, y), called in this order: of column x of row y.
+/// Writes row by row; calls entry(x, y) for column x of row y in this order.
 template <class Entry>
 void write_table(const datapath::TableLayout& layout, const TableSink& sink, Entry entry) {
     std::vector<unsigned char> bytes(std::size_t{layout.columns} * layout.entry_bytes);

@@ -75,7 +75,7 @@ EndToEndResult compare(const MachineSetup& setup, const GoldenSurface& golden, c
                                         d.max * model,
                                         d.rms * model};
     };
-    // One after the other, for the memory's sake: each uses all cores.
+    // Sequential, to limit memory: each uses all cores.
     result.hardware_to_golden = measure(hardware_soup, golden.triangles);
     tell(progress, 0.5);
     result.golden_to_hardware = measure(golden.triangles, hardware_soup);
@@ -92,7 +92,7 @@ double largest_turn(const BaseTriangles& base) {
     return turn;
 }
 
-/// Whether all normals of each base triangle are one unit vector along an axis, so that they and their means are exact.
+/// Whether each base triangle's normals are all the same unit vector along an axis: they and their means are exact.
 bool normals_are_exact(const BaseTriangles& base) {
     return largest_turn(base) == 0 && std::all_of(base.begin(), base.end(), [](const auto& t) {
                const glm::dvec3 n = glm::abs(t[0].normal);
@@ -172,7 +172,7 @@ EndToEndResult GoldenRun::compare(const EmittedMesh& hardware, double allowed_tr
     most_ = std::min(most_.load(), bound);
     GoldenSurface surface = surface_.get();
     if (surface.run.bound_hit || surface.run.triangles_emitted > bound) {
-        surface = {};  // its memory
+        surface = {};  // releases its memory
         surface = run_golden(base_, golden_.map(), parameters_, bound);
     }
     return tessera::compare(

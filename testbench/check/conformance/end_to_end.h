@@ -83,15 +83,15 @@ struct GoldenSurface {
 class GoldenRun {
   public:
     /// `setup` and `golden` must outlive it.
-    /// `base_triangles`: indices of the mesh's triangles that the machine received (SetupResult).
-    /// `most`: triangles at which the run waits for the hardware's.
+    /// `base_triangles`: indices of those triangles of the mesh that the machine received (SetupResult).
+    /// `most`: number of triangles at which the run waits for the hardware's mesh.
     GoldenRun(const MachineSetup& setup, const GoldenJob& golden, const std::vector<std::uint32_t>& base_triangles,
               std::uint64_t most = UINT64_MAX);
     ~GoldenRun();
     GoldenRun(const GoldenRun&) = delete;
     GoldenRun& operator=(const GoldenRun&) = delete;
 
-    /// To be called once.
+    /// Call once only.
     /// `allowed_triangles`: in percent; infinite if values of the machine saturated, since golden's do not.
     /// `progress`: called with the fraction done, 0..1; may be null.
     /// Where both split the same triangles, a point of one surface lies within r of the other. The other points are at

@@ -46,12 +46,12 @@ class ErrorBounds {
         return normalised(direction, length, left_by_rounding_down(mean, normal_lsb_));
     }
 
-    /// Where the hardware reads the maps for golden's t: t_ij is rounded down, and a base vertex's t is exact.
+    /// The point at which the hardware reads the maps for golden's t: t_ij is rounded down; a base vertex's t is exact.
     glm::dvec2 read_at(const glm::dvec2& t) const { return glm::floor(t / texture_lsb_) * texture_lsb_; }
 
-    /// A map at t, in codes or components of N_d, of golden's value there and at read_at(t). Both lie under one texel,
-    /// whose value is exact. Between texels the two differ; then bilinear.h rounds to nearest, a code with code_fraction
-    /// fraction bits, N_d to the normal's format. What it rounds has at most 18 + 26 bits, exact in double precision too.
+    /// Error of a map's value at t, in codes or components of N_d; `read`: golden's at read_at(t), in the same texel,
+    /// whose value is exact. Interpolated values differ; bilinear.h then rounds to nearest, a code to code_fraction
+    /// bits, N_d to the normal's format. Its operand has at most 18 + 26 bits, exact in double precision too.
     double code(double code, double read) const { return std::abs(read - code) + after_rounding(read, 0, code_lsb_); }
     glm::dvec3 map_normal(const glm::dvec3& n, const glm::dvec3& read) const {
         return glm::abs(read - n) + after_rounding(read, glm::dvec3(0), normal_lsb_);
@@ -131,8 +131,8 @@ class ErrorBounds {
         return result;
     }
 
-    /// D of P' with error up to `p_error`; golden's. A norm differs by no more than the norm of the difference. rank_view.h:
-    /// rounded down.
+    /// D of P' with error up to `p_error`; `distance` is golden's. Two norms differ by at most the norm of the
+    /// difference. rank_view.h rounds down.
     Interval distance(const glm::dvec3& p_error, double distance) const {
         const double before = golden::eye_distance(p_error) + double_rounding * distance;
         return {-before - view_distance_lsb_, before};

@@ -65,8 +65,8 @@ golden::Map golden_map(const MachineSetup& setup) {
     return map;
 }
 
-/// The registers' thresholds are those at D_i + D_j = 1 LSB, golden's those at a mean distance of 1: an octave and the
-/// binary point apart.
+/// The registers' thresholds hold at D_i + D_j = 1 LSB, golden's at a mean distance of 1: they differ by an octave and
+/// by the position of the binary point.
 void set_rank_view(const datapath::Registers& registers, golden::Parameters& result) {
     const datapath::Formats& formats = registers.formats;
     const int octaves = formats.view_distance.fraction + 1;
@@ -95,7 +95,7 @@ golden::Parameters golden_parameters(const datapath::Registers& registers) {
 
     result.normal_threshold = real(tests.normal_threshold, formats.normal.fraction);
     result.area = tests.summed_height_unit == datapath::SummedHeightUnit::area;
-    // The register of the `sum` unit holds four times the threshold.
+    // With the `sum` unit, the register holds four times the threshold.
     result.summed_height_threshold = real(tests.summed_height_threshold, result.area ? 0 : 2);
     result.rank_threshold = static_cast<int>(tests.rank_threshold);
     result.bound_threshold = static_cast<int>(tests.bound_threshold);

@@ -52,7 +52,7 @@ golden::AddressMode golden_mode(datapath::AddressMode mode);
 golden::Diagonal golden_diagonal(datapath::Triangulation choice);
 golden::Filter golden_filter(datapath::MapFilter filter);
 
-/// What the author gives as the map is given: fitted heights, the Rank or the Curvature Table, the mipmap's filter.
+/// Copies what golden takes as given: fitted heights, the Rank or the Curvature Table, the mipmap's filter.
 void set_tables(golden::Map& map, const PreparedScene& prepared);
 
 /// The registers as the golden model's parameters. Exact except for the transform's fourth column and the near plane,

@@ -16,7 +16,7 @@ glm::dvec3 vector(const std::array<double, 3>& a) {
     return {a[0], a[1], a[2]};
 }
 
-/// The map values that displacement.scale spans, by map.range.
+/// The range of map values that displacement.scale spans, from map.range.
 std::array<double, 2> span_of(const Job& job, const HeightMap& map) {
     if (job.map.range.kind == MapRange::Kind::full)
         return {0, 1};
@@ -43,7 +43,7 @@ glm::dvec2 texel_size(const BaseMesh& mesh, const HeightMap& map, double scale) 
     return scale * glm::dvec2(mesh.texture_scale.mean_u, mesh.texture_scale.mean_v) / glm::dvec2(map.width, map.height);
 }
 
-/// Whole texels or, between whose centres heights change, halves of those that texture coordinates can halve.
+/// Whole texels; with interpolated heights half texels, on the axes that texture coordinates can halve.
 double texel_parts(const Job::Formats& formats, golden::Filter filter) {
     if (formats.tex_coord_fraction >= 0)
         return std::ldexp(1.0, static_cast<int>(formats.tex_coord_fraction));

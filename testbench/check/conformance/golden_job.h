@@ -11,15 +11,15 @@
 namespace tessera {
 
 /// The golden model's inputs, derived from a job, its mesh and its map independently of the host. Only the placement of
-/// the model in the world (ModelScale) is the host's, which is free to choose it. setup_check.h compares the host's
-/// set-up of the same job with this, and golden's own run starts here (end_to_end.h).
+/// the model in the world (ModelScale), a free choice, is the host's. setup_check.h compares the host's set-up of the
+/// same job with this; golden's own run (end_to_end.h) starts from it.
 ///
 /// The map's codes are golden's own, of the job's width; `tessera widths` measures the effect of that width. Memory: 12
 /// bytes per texel.
 class GoldenJob {
   public:
     /// `job` must be resolved (resolve_job.h), `mesh` and `height_map` must outlive this.
-    /// tables: what the author gives as the map is given (set_tables).
+    /// `tables`: sets the inputs that golden takes as given (set_tables).
     GoldenJob(const Job& job, const BaseMesh& mesh, const HeightMap& height_map, const ModelScale& model_scale,
               const PreparedScene& tables = {});
 

@@ -135,10 +135,10 @@ void Scoreboard::compare_edge(const datapath::TrianglePass& pass, int k, const g
     const double leeway = std::max({bumped_bound.x, bumped_bound.y, bumped_bound.z}) + 0x1p-50;
     const bool near_threshold = inputs_.parameters.enabled.normal &&
                                 std::abs(golden.normal_difference - inputs_.parameters.normal_threshold) <= leeway;
-    const bool split = (pass.split >> k & 1) != 0;  // with greatest_rank one of the edges that ask
+    const bool split = (pass.split >> k & 1) != 0;  // with greatest_rank, one of the edges that request it
     const bool tests_told = pass.told != datapath::Told::midpoints, midpoint_told = pass.told != datapath::Told::tests;
     if (tests_told && (pass.triangle.final_edges >> k & 1) != 0) {
-        // Tested with the parent, from the same ends. Without those tests that may flip, would golden split it?
+        // Tested with the parent, from the same ends. Would golden split it without the tests that may flip?
         const bool asked = (golden.normal_test && !near_threshold) || golden.summed_height_test ||
                            (golden.highlight_test && !highlight_may_flip(golden, bumped_bound, leeway));
         decide(split_decision, split, golden.split, !asked, context);
@@ -170,7 +170,7 @@ void Scoreboard::compare_edge(const datapath::TrianglePass& pass, int k, const g
         compare(inserted_texture, t.v, m.texture.y, bounds_.texture_midpoint(), formats.texture, per_texture_, 'v',
                 context);
     };
-    // Both branches calculate it.
+    // Both branches calculate t_ij.
     if (midpoint_told)
         texture(made.texture);
     if (tests_told)

@@ -26,11 +26,11 @@ namespace tessera {
 /// HT, compared if the design has it, may differ as NT does (with its own threshold), and if golden's N'_ij . H
 /// lies within its bound of the cosine and neither end is in the highlight; the ends' own products are exact.
 ///
-/// Only what the machine has evaluated is compared: N_ij, T_ij, N'_ij and NT, HT if the Normal Test was; SHT likewise;
-/// of a final edge nothing but that golden does not split it.
+/// Only values that the machine has evaluated are compared: N_ij, T_ij, N'_ij, NT and HT if the Normal Test was
+/// evaluated; SHT likewise; of a final edge only that golden does not split it.
 ///
-/// Of families an edge's tests and its midpoint are told apart (Told), and (N_i+N_j)/2, which no unit sends, is not
-/// compared.
+/// With families, an edge's tests and its midpoint are reported separately (Told), and (N_i+N_j)/2, which no unit
+/// sends, is not compared.
 ///
 /// Any other difference is a mismatch: counted, the first kept with all operands. The diagonal is calculated by the
 /// datapath's function (triangulate.h), which Tessellation applies later, from the pass's P'.
@@ -98,14 +98,14 @@ class Scoreboard : public tlm::tlm_analysis_if<datapath::TrianglePass> {
 
     void compare_base_vertex(const datapath::TrianglePass& pass, int k, const golden::Vertex& given);
     void compare_edge(const datapath::TrianglePass& pass, int k, const golden::Vertex& i, const golden::Vertex& j);
-    /// What golden reads of a map, and the bound on the hardware's error.
+    /// Golden's value from a map, and the bound on the hardware's error.
     template <class Value>
     struct MapValue {
         Value value{0};
         Value error{0};
     };
     MapValue<glm::dvec3> map_normal_at(const glm::dvec2& t) const;
-    /// Of P'; t: where the displacement map is read.
+    /// Error bound of P'. `t`: where the displacement map is read.
     glm::dvec3 displaced_bound(const glm::dvec3& p, const glm::dvec2& t, const glm::dvec3& n, const glm::dvec3& n_error,
                                const glm::dvec3& displaced) const;
     /// Whether HT may differ. `difference_leeway`: error bound of golden's normal_difference.

@@ -88,7 +88,7 @@ class RegisterCheck {
         check_summed_height();
     }
 
-    /// w is as wide as a position, with the most fraction bits, up to the position's, with which the farthest w fits.
+    /// w has a position's width and the most fraction bits, up to the position's, with which the farthest w fits.
     void check_view_distance() {
         const Format& hardware = formats_.view_distance;
         format("view_distance", hardware, Format::make_signed(formats_.position.bits, hardware.fraction));
@@ -335,7 +335,7 @@ class RegisterCheck {
                 return fmt::format("transform.exponent = {}, with which the rows reach {:.6g}: not in 1/2 .. 1",
                                    transform.exponent, reach);
             });
-        // Beyond every w, all the same.
+        // Values beyond every possible w are equivalent.
         judge_.judge("transform.near_plane", number(transform.near_plane),
                      std::min(view_.near_plane * matrix * position, 0x1p62), rounded_down);
         const std::array<double, 3> eye{view_.eye.x, view_.eye.y, view_.eye.z};

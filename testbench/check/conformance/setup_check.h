@@ -55,7 +55,7 @@ struct SetupResult {
 /// Reads the memories by debug transport, row by row. 4096 x 4096 texels take about 2 seconds.
 SetupResult check_setup(const MachineSetup& setup, const GoldenJob& golden, Simulation& simulation);
 
-/// SetupResult::base_triangles, before there is a simulation.
+/// Computes SetupResult::base_triangles before a simulation exists.
 std::vector<std::uint32_t> received_triangles(const MachineSetup& setup, const GoldenJob& golden);
 
 }  // namespace tessera

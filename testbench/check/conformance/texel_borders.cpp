@@ -13,13 +13,13 @@ namespace tessera {
 
 namespace {
 
-/// Coordinates in a file are truncated decimals, so that thirds lie off the border in exact arithmetic, too. With 10 %
-/// of the edges one LSB below a border 0.2 % of the decisions differed (the cylinder of a scanned head), with 67 % (256
+/// Coordinates in a file are truncated decimals, so that thirds miss the border in exact arithmetic, too. With 10 % of
+/// the edges one LSB below a border 0.2 % of the decisions differed (the cylinder of a scanned head), with 67 % (256
 /// texels on 3 quads) 15.6 %.
 constexpr double least_share_of_a_file = 0.2;
 
-/// Whether the base vertices of an axis of `quads` quads lie on coordinates of the format: texels * 2^fraction is a
-/// multiple of quads.
+/// Whether the texture format represents the base vertices' coordinates exactly on an axis of `quads` quads: texels *
+/// 2^fraction is a multiple of quads.
 bool held(std::int64_t texels, std::int64_t quads, std::int64_t fraction) {
     return (texels << fraction) % quads == 0;
 }

@@ -20,7 +20,7 @@ std::uint64_t hash_of(const EmittedTriangle& triangle) {
     return hash;
 }
 
-/// The three (P, t), in an order that does not depend on the triangle's.
+/// The three (P, t), in an order independent of the triangle's.
 auto place_of(const EmittedTriangle& triangle) {
     const auto key = [&](std::size_t k) {
         const auto& c = triangle.corners[k];
@@ -79,7 +79,7 @@ void EmittedDifference::begin(std::uint32_t base) {
 
 void EmittedDifference::expect(const EmittedTriangle& triangle) {
     Entry& entry = entry_of(triangle);
-    if (entry.triangle == &triangle) {  // nothing alike was emitted
+    if (entry.triangle == &triangle) {  // no equal triangle was emitted
         expected_alone_.push_back(triangle);
         entry.triangle = &expected_alone_.back();
     }

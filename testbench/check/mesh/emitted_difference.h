@@ -11,38 +11,38 @@
 
 namespace tessera {
 
-/// The difference of two multisets of triangles, bit for bit (all of EmittedTriangle), one base triangle at a time:
-/// those emitted, and those that should have been. The order within a base triangle is free.
+/// Compares two multisets of triangles, bit for bit (all of EmittedTriangle), one base triangle at a time: the emitted
+/// and the expected ones. Order within a base triangle does not matter.
 ///
-/// Differing: one missing and one extra with the same three (P, t), which may be in another order. What names a base
-/// triangle that does not exist is extra.
+/// Differing: one missing and one extra with the same three (P, t), which may be in another order. A triangle of a
+/// nonexistent base triangle is extra.
 class EmittedDifference {
   public:
-    /// `mesh` must outlive it. Four bytes a triangle; ResourceError beyond 2^32 - 1.
+    /// `mesh` must outlive it. Four bytes per triangle; ResourceError beyond 2^32 - 1.
     EmittedDifference(const EmittedMesh& mesh, std::size_t base_triangles, const datapath::Formats& formats);
 
-    void begin(std::uint32_t base);  ///< each once
+    void begin(std::uint32_t base);  ///< once per base triangle
     void expect(const EmittedTriangle& triangle);
     void end();
 
     std::uint64_t missing() const { return missing_; }
     std::uint64_t extra() const { return extra_; }
     std::uint64_t differing() const { return differing_; }
-    /// The first of them found. Empty: none.
+    /// The first difference found; empty if none.
     const std::string& first() const { return first_; }
 
   private:
     struct Entry {
         const EmittedTriangle* triangle;
-        std::int64_t surplus;  ///< emitted less expected
+        std::int64_t surplus;  ///< emitted minus expected
     };
     Entry& entry_of(const EmittedTriangle& triangle);
     void note(const char* what, const EmittedTriangle& triangle);
 
     const EmittedMesh& mesh_;
     const datapath::Formats& formats_;
-    std::vector<std::uint32_t> order_;    // the triangles' indices by base triangle
-    std::vector<std::uint32_t> offsets_;  // where those of each begin
+    std::vector<std::uint32_t> order_;    // triangle indices, by base triangle
+    std::vector<std::uint32_t> offsets_;  // start of each base triangle's part
     DistinctTable table_;
     std::vector<Entry> entries_;
     std::deque<EmittedTriangle> expected_alone_;

@@ -15,7 +15,7 @@ namespace {
 
 __extension__ using Wide = __int128;
 
-/// -1, 0 or 1.
+/// The sign of the triangle's area in texture space.
 template <class HasTexture>
 int texture_side(const std::array<HasTexture, 3>& c) {
     const auto u = [&](std::size_t k) { return Wide{c[k].texture.u} - c[0].texture.u; };
@@ -24,7 +24,7 @@ int texture_side(const std::array<HasTexture, 3>& c) {
     return doubled_area > 0 ? 1 : (doubled_area < 0 ? -1 : 0);
 }
 
-/// What can be said of each triangle by itself.
+/// Checks each triangle on its own.
 void judge_triangles(const EmittedMesh& mesh, const MachineSetup& setup, InvariantResult& result) {
     const datapath::TestParameters& tests = setup.registers.tests;
     std::vector<std::int8_t> base_sides;
@@ -51,7 +51,7 @@ void judge_triangles(const EmittedMesh& mesh, const MachineSetup& setup, Invaria
     }
 }
 
-/// One walk for both: is this mesh closed, and is it the one that was emitted?
+/// One walk for both checks: that the mesh is closed, and that it is the emitted mesh.
 struct Walk {
     using Note = Lineage::Note;
     Lineage lineage;
@@ -123,8 +123,8 @@ std::vector<InvariantFigure> invariant_figures(const InvariantResult& r) {
 InvariantResult check_invariants(const EmittedMesh& mesh, const MachineSetup& setup) {
     BareRecursion bare(setup);
     Walk walk{Lineage(setup, bare), EmittedDifference(mesh, setup.base_triangles.size(), setup.registers.formats)};
-    // A machine's N triangles take fewer than 6 N edges. The datapath's recursion need not end if the mesh is not its
-    // own.
+    // A machine's N triangles take fewer than 6 N edges. If the emitted mesh is wrong, the datapath's recursion may not
+    // end.
     const std::uint64_t most_edges = 24 * mesh.triangles.size() + 3'000'000;
     const std::uint64_t edges = bare.walk(walk, most_edges);
     walk.end();

@@ -8,24 +8,24 @@
 
 namespace tessera {
 
-/// What must hold of the mesh of any run, on integers, with no tolerance:
-///   - it is the mesh that the datapath by itself makes of the same setup (BareRecursion): the same triangles, bit for
+/// Invariants of every run's mesh, checked on integers without tolerance:
+///   - it equals the mesh that the bare datapath makes of the same setup (BareRecursion): the same triangles, bit for
 ///     bit, in any order (emitted_difference.h);
-///   - that mesh is closed, by descent (lineage.h): no cracks, no T-vertices, no vertex that differs from one
-///     triangle to another.
-/// That the datapath's values and decisions are the right ones is the scoreboard's to say.
+///   - that mesh is closed, by descent (lineage.h): no cracks, no T-vertices, and each vertex is the same in all
+///     triangles.
+/// The scoreboard checks that the datapath's values and decisions are correct.
 struct InvariantResult {
-    // What was looked at.
+    // Extent of the check.
     std::uint64_t triangles = 0;  ///< emitted, culled ones included
-    std::uint64_t edges = 0;      ///< evaluated by the datapath by itself
+    std::uint64_t edges = 0;      ///< evaluated by the bare datapath
     std::uint64_t base_triangles = 0;
-    std::uint64_t base_edges = 0;               ///< distinct by P; those of zero length left out
+    std::uint64_t base_edges = 0;               ///< distinct by P; edges of zero length excluded
     std::uint64_t border_base_edges = 0;        ///< of one base triangle
     std::uint64_t non_manifold_base_edges = 0;  ///< of more than two
-    std::uint64_t texture_seams = 0;  ///< base edges whose sides differ in t by other than whole periods: not joined
-    std::uint64_t creases = 0;        ///< base edges whose sides agree in t but not in N, T: not joined
+    std::uint64_t texture_seams = 0;  ///< base edges whose sides differ in t by other than whole periods; not joined
+    std::uint64_t creases = 0;        ///< base edges whose sides agree in t but not in N, T; not joined
 
-    // Violations: none in a correct run.
+    // Violations: 0 in a correct run.
     std::uint64_t t_vertices = 0;
     std::uint64_t cracks = 0;
     std::uint64_t inconsistent_vertices = 0;
@@ -33,18 +33,18 @@ struct InvariantResult {
     std::uint64_t extra_triangles = 0;
     std::uint64_t differing_triangles = 0;    ///< one missing and one extra at the same three (P, t)
     std::uint64_t generation_violations = 0;  ///< triangles with a vertex beyond the generation limit
-    std::uint64_t unfinished = 0;  ///< 1: the datapath's own recursion went on far beyond this mesh, and was cut off
+    std::uint64_t unfinished = 0;  ///< 1: the bare datapath's recursion continued far beyond this mesh and was stopped
 
-    // Rounding's doing, to thin triangles: it opens nothing.
+    // Effects of rounding on thin triangles; they open no gaps.
     std::uint64_t collapsed = 0;            ///< no area in texture space
-    std::uint64_t turned_over = 0;          ///< the texture area's sign is not the base triangle's
-    std::uint64_t displaced_collapsed = 0;  ///< two corners at one P'
+    std::uint64_t turned_over = 0;          ///< the sign of the texture area differs from the base triangle's
+    std::uint64_t displaced_collapsed = 0;  ///< two corners have the same P'
 
     // Caused by the input: pieces of texture seams and creases that do not meet, counted on the finer side.
     std::uint64_t open_texture_seam_edges = 0;
     std::uint64_t open_crease_edges = 0;
 
-    /// The first violation, as text: one in the datapath's own mesh before a difference of the emitted one. Empty:
+    /// Text of the first violation; one in the bare datapath's mesh precedes differences of the emitted mesh. Empty if
     /// none.
     std::string first_violation;
 
@@ -66,12 +66,10 @@ struct InvariantFigure {
 /// All figures, in the struct's order.
 std::vector<InvariantFigure> invariant_figures(const InvariantResult& result);
 
-/// Checks a whole emitted mesh, in any order, against the setup it was made of, whose base triangles are numbered in
-/// their order (make_setup does).
-/// Where the datapath's own recursion is far longer than the mesh explains, it is cut off: a violation; cracks are then
-/// not known.
-/// Memory beyond the mesh: 4 bytes a triangle, 150 a triangle of the base triangle that has most, 200 a base triangle,
-/// 12 a texel. ResourceError beyond 2^32 - 2 triangles.
+/// Checks a whole emitted mesh, in any order, against its setup. Base triangles are numbered in the setup's order (as
+/// by make_setup). If the bare datapath's recursion is far longer than the mesh explains, it is stopped: a violation,
+/// and cracks are then unknown. Memory beyond the mesh: 4 bytes per triangle, 150 per triangle of the largest base
+/// triangle, 200 per base triangle, 12 per texel. ResourceError beyond 2^32 - 2 triangles.
 InvariantResult check_invariants(const EmittedMesh& mesh, const MachineSetup& setup);
 
 }  // namespace tessera

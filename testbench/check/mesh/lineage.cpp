@@ -234,7 +234,7 @@ std::uint64_t Lineage::pieces_of(Number number) const {
     return edge.middle == none ? 1 : pieces_of(edge.pieces) + pieces_of(edge.pieces + 1);
 }
 
-/// Pieces in which two sides that run the same way do not meet; where one is cut finer, all of the finer side's.
+/// Number of pieces where two sides of the same direction do not meet; if one side is finer, all its pieces.
 std::uint64_t Lineage::open_pieces(Side a, Side b) const {
     const Edge &one = edges_[a.edge], &other = edges_[b.edge];
     if (one.middle == none && other.middle == none) {
@@ -253,7 +253,7 @@ std::uint64_t Lineage::open_pieces(Side a, Side b) const {
 
 void Lineage::compare_base_edges() {
     struct Placed {
-        Number low, high;  // first vertex at the place of either end
+        Number low, high;  // first vertex at the position of either end
         Side side;         // from low to high
     };
     std::vector<Number> first_there;

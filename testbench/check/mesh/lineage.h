@@ -13,34 +13,34 @@
 
 namespace tessera {
 
-/// Decides whether a tessellation is closed: a visitor of BareRecursion::walk. It follows each edge from the base edge
-/// it descends from; positions are not compared.
+/// Decides whether a tessellation is closed: a visitor of BareRecursion::walk. Traces each edge to the base edge from
+/// which it descends; positions are not compared.
 ///
-/// A vertex is identified by the edge it was inserted on, so two that rounding puts in one place remain two. Base
+/// A vertex is identified by the edge on which it was inserted, so two vertices that rounding merges remain two. Base
 /// vertices are the same if they agree in P, N, T, handedness, and in t up to whole periods of a repeated axis. Two
 /// sides are *joined* into one base edge if both ends are the same vertices and t changes by the same amount along
 /// both. Then
-///   - a piece of a base edge must have the triangles on either side that its base edge has; an edge inside a base
-///     triangle one on each: else a crack;
+///   - a piece of a base edge must have the same triangles on either side as its base edge; an edge inside a base
+///     triangle, one on each side: otherwise it is a crack;
 ///   - no edge may be split by one of its triangles and whole in another: a T-vertex;
-///   - a vertex must be the same, all it carries but N's and whole periods of t, in all triangles that have it.
-/// Exact for any formats: nothing is excused. What comes apart between sides that are not joined is the input's doing:
-/// its map, or its normals, are not continuous there.
+///   - all fields of a vertex, except N's and whole periods of t, must be equal in all its triangles.
+/// Exact for any formats, without exceptions. Gaps between sides that are not joined are caused by the input: its map
+/// or its normals are discontinuous there.
 ///
-/// Memory: about 200 bytes a base triangle, and 130 a triangle emitted of the base triangle at hand.
+/// Memory: about 200 bytes per base triangle, and 130 per triangle emitted from the current base triangle.
 class Lineage {
   public:
-    /// `setup` must outlive it; `bare` is of the same.
+    /// `setup` must outlive it; `bare` must be of the same setup.
     Lineage(const MachineSetup& setup, BareRecursion& bare);
 
-    /// After the walk: what it found of base edges and between triangles; the other members stay 0.
+    /// Call after the walk. Returns the results for base edges and between triangles; the other members stay 0.
     InvariantResult finish();
 
     using Number = std::uint32_t;  ///< of a vertex or an edge, see Numbered
-    /// An edge as a triangle has it.
+    /// An edge as used by a triangle.
     struct Side {
         Number edge;
-        bool along;  ///< the triangle has it in the edge's own direction
+        bool along;  ///< the triangle uses it in the edge's own direction
         Side turned() const { return {edge, !along}; }
     };
     struct Note {
@@ -55,7 +55,7 @@ class Lineage {
   private:
     static constexpr Number none = UINT32_MAX;
 
-    /// Items of base edges, which are kept, and of the inside of the base triangle at hand.
+    /// Items of base edges, which are kept, and of the interior of the current base triangle.
     template <class Item>
     class Numbered {
       public:
@@ -82,7 +82,7 @@ class Lineage {
         datapath::Vertex vertex;  // as first seen
         bool unlike = false;
     };
-    /// How many triangles have an edge along its direction, and against it.
+    /// The number of triangles that use an edge along its direction, and against it.
     struct Sides {
         std::uint32_t along = 0, against = 0;
         std::uint32_t& of(bool is_along) { return is_along ? along : against; }
@@ -90,11 +90,11 @@ class Lineage {
     };
     struct Edge {
         Number from, to;
-        Number middle = none;  // none: nobody has split it
-        Number pieces = none;  // from..middle; the next is middle..to
-        Sides wanted, found;   // found: of triangles that keep it whole
+        Number middle = none;  // none: not split
+        Number pieces = none;  // from..middle; the next one is middle..to
+        Sides wanted, found;   // found: from triangles that do not split it
     };
-    /// The way in t from one end of a base edge to the other.
+    /// The change of t from one end of a base edge to the other.
     struct Way {
         std::int64_t u, v;
         friend bool operator==(const Way& a, const Way& b) { return a.u == b.u && a.v == b.v; }
@@ -121,10 +121,10 @@ class Lineage {
     InvariantResult result_;
     Numbered<KnownVertex> vertices_;
     Numbered<Edge> edges_;
-    std::vector<Way> ways_;         // of the base edges, which are the first of the edges that are kept
+    std::vector<Way> ways_;         // of the base edges, which come first among the kept edges
     std::vector<Note> base_notes_;  // of the base triangles
-    std::uint32_t base_ = none;     // at hand
-    // of the pass decided last, by the six indices of its corners and midpoints
+    std::uint32_t base_ = none;     // current base triangle
+    // of the last decided pass, by the six indices of its corners and midpoints
     std::array<Number, 6> corners_{};
     std::array<std::array<Side, 6>, 6> sides_{};
 };

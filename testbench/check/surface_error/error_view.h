@@ -8,7 +8,7 @@
 
 namespace tessera {
 
-/// A job's camera, resolved: where a point of model space lies in the picture.
+/// A job's resolved camera: maps points of model space to the picture.
 class ErrorView {
   public:
     explicit ErrorView(const CameraSettings& camera)
@@ -20,7 +20,7 @@ class ErrorView {
           focal_(half_.y / std::tan(glm::radians(camera.field_of_view) / 2)),
           near_(camera.near_plane) {}
 
-    /// Pixels from the picture's centre, of a point beyond the near plane; infinite of others.
+    /// Offset in pixels from the picture's centre if the point is beyond the near plane, else infinite.
     glm::dvec2 place(const glm::dvec3& p) const {
         const glm::dvec3 from_eye = p - eye_;
         const double depth = glm::dot(from_eye, forward_);
@@ -29,7 +29,7 @@ class ErrorView {
         return focal_ / depth * glm::dvec2(glm::dot(from_eye, right_), glm::dot(from_eye, up_));
     }
 
-    /// How many pixels another point appears away from one in the picture; nothing if that is not in it.
+    /// Distance in pixels between two points in the picture; nothing if the first is not in it.
     std::optional<double> apart(const glm::dvec3& in_picture, const glm::dvec3& other) const {
         const glm::dvec2 at = place(in_picture);
         if (!(std::abs(at.x) <= half_.x && std::abs(at.y) <= half_.y))

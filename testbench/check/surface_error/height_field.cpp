@@ -82,7 +82,7 @@ std::optional<HeightField> find_height_field(const BaseMesh& base, const HeightM
     field.u = along_p.x * dual_p + along_q.x * dual_q;
     field.v = along_p.y * dual_p + along_q.y * dual_q;
 
-    // Heights are measured along the vertices' normals, on whichever side of the triangle these lie.
+    // Heights are measured along the vertices' normals, whichever side of the triangle they are on.
     if (glm::dot(field.normal, corner(largest, 0).normal) < 0)
         field.normal = -field.normal;
     const auto [low, high] = bounds_of(base.vertices);

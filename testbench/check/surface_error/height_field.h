@@ -39,15 +39,15 @@ struct VerticalError {
     std::uint64_t covered = 0;              ///< grid points under the emitted mesh; only these count below
     double max = 0, rms = 0;                ///< model units; all grid points have equal weight
     std::uint64_t seen = 0;                 ///< covered grid points in the picture, hidden ones too; 0 without a view
-    double max_pixels = 0, rms_pixels = 0;  ///< between where they and the mesh above or below them appear
+    double max_pixels = 0, rms_pixels = 0;  ///< distance in the picture to the mesh above or below
     double map_unit = 0;                    ///< one unit of the map's source in model units; 0 if the scale is 0
-    glm::dvec2 worst_texel{0};              ///< the grid point of the maximum, in texels
+    glm::dvec2 worst_texel{0};              ///< the grid point with the maximum, in texels
     glm::dvec3 worst_position{0};           ///< on the displaced surface, model units
     std::uint64_t worst_triangle = 0;       ///< the emitted triangle over it
 };
 
-/// Evaluated in bands of rows of at most 2^22 grid points; takes 40 MB for any map size. ResourceError beyond 2^32
-/// grid points. view: of the picture, if errors are to be measured there too.
+/// Evaluated in bands of rows of at most 2^22 grid points; takes 40 MB for any map size. ResourceError beyond 2^32 grid
+/// points. `view`: the camera, to measure errors in the picture too; may be null.
 VerticalError measure_vertical_error(const HeightField& field, const BaseMesh& base, const HeightMap& map,
                                      const DisplacementOf& displacement, const RecordedMesh& mesh,
                                      const ErrorView* view = nullptr);

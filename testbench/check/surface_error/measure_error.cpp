@@ -86,7 +86,7 @@ class Measurement {
     }
 
   private:
-    /// The largest squared distance and its place; the first of equal ones.
+    /// The largest squared distance and where it is; the first of equal ones.
     struct Worst {
         double squared = -1;
         glm::dvec3 position{0};
@@ -177,7 +177,7 @@ class Measurement {
         error.vertices.assign(mesh_.positions.size(), 0);
         constexpr std::size_t nobody = SIZE_MAX;
         std::vector<std::size_t> first_user(mesh_.positions.size(),
-                                            nobody);  // the triangle that measures a vertex
+                                            nobody);  // the triangle that measures each vertex
         for (std::size_t k = soup_.size(); k-- > 0;)
             for (const std::uint32_t vertex : mesh_.triangles[k].vertices)
                 first_user[vertex] = k;

@@ -12,7 +12,7 @@ namespace {
 
 class Equations {
   public:
-    /// The machine of which the next are.
+    /// Sets the machine that the following equations belong to.
     void of(const std::string& machine) { machine_ = machine + ": "; }
     void add(const std::string& name, std::uint64_t left, std::uint64_t right) {
         list_.push_back({machine_ + name, left, right});
@@ -69,20 +69,20 @@ void add_triangles(Equations& list, const MachineSetup& setup, const HostedMachi
              counts.finished - counts.culled);
 }
 
-/// Vertices sent to Tessellation Tests, of families none. With three units, each receives the two ends of its edge.
+/// Vertices sent to Tessellation Tests, none with families. With three units, each receives the two ends of its edge.
 std::uint64_t bumps(const Pipeline& p, std::uint64_t vertices) {
     if (p.family_tessellation != nullptr)
         return 0;
     return p.tessellation_tests.size() == 1 ? vertices : 2 * vertices;
 }
 
-/// Requests to the normal map: of families Displace Vertex bumps the vertices, else the tests do.
+/// Requests to the normal map: with families, Displace Vertex bumps the vertices, otherwise the tests do.
 std::uint64_t normal_map_requests(const Pipeline& p, std::uint64_t vertices, std::uint64_t normal) {
     return (p.family_tessellation != nullptr ? vertices : bumps(p, vertices)) + normal;
 }
 
-/// Each edge's tests: `midpoints` of edges are displaced, `normal` and `summed_height` of `edges` edges are evaluated,
-/// `by_codes` of the latter from the displacement map in place of the test's table, `off_lattice` without a read.
+/// `midpoints` of edges are displaced, `normal` and `summed_height` of `edges` edges are evaluated; of the latter,
+/// `by_codes` read the displacement map instead of the test's table, `off_lattice` read nothing.
 struct Tested {
     std::uint64_t vertices;
     std::uint64_t edges;
@@ -93,8 +93,8 @@ struct Tested {
     std::uint64_t off_lattice;
 };
 
-/// each: entries from which a map is read for a vertex or an edge. codes_an_edge: of one that its height test decides by
-/// codes.
+/// `each`: entries per map read of a vertex or an edge. `codes_an_edge`: the same, for an edge whose height test
+/// decides by codes.
 void add_reads(Equations& list, const Pipeline& p, const Tested& tested, std::uint64_t each,
                std::uint64_t codes_an_edge) {
     const auto& [vertices, edges, midpoints, normal, summed_height, by_codes, off_lattice] = tested;
@@ -140,7 +140,7 @@ void add_timed(Equations& list, const MachineSetup& setup, const HostedMachine& 
     list.add("triangles in triangle_queue = taken by it", items(p.triangle_queue), p.triangle_queue.taken());
     list.add("triangles in lighting = finished - culled", items(p.lighting), counts.finished - counts.culled);
 
-    // geometry branch: a base triangle's vertices, midpoints, each new vertex's normal; of families the normal with it
+    // geometry branch: a base triangle's vertices, midpoints, and each new vertex's normal, which families include
     const std::uint64_t parts = p.get_triangle.parts_sent();
     list.add("parts in calculate_new_p = sent by get_triangle", items(p.calculate_new_p), parts);
     list.add("parts in displace_vertex = sent by get_triangle", items(p.displace_vertex), parts);
@@ -227,11 +227,11 @@ void add_machine(Equations& list, const MachineSetup& setup, const HostedMachine
     const Pipeline& p = machine.pipeline;
     const DecidingUnit::Counts& counts = p.pass_or_tessellate.counts();
     const std::uint64_t base = p.get_triangle.host_triangles();
-    // A triangle with k split edges has k + 1 children with 4 k new edges, which alone are not final; of families the k
-    // inside it are tested once.
+    // A triangle with k split edges has k + 1 children with 4 k new edges, the only ones that are not final; with
+    // families, the k interior edges are tested once.
     const bool final_edges = setup.registers.formats.final_edges;
     const bool families = setup.design.work == Work::family;
-    // An edge that asks while another is cut is tested again.
+    // An edge that requests a split while another is cut is tested again.
     const std::uint64_t edges = families      ? 3 * counts.finished + counts.edges_uncut
                                 : final_edges ? 3 * base + 4 * counts.edges_split + counts.edges_uncut
                                               : 3 * counts.passes;

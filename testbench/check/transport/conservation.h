@@ -17,8 +17,8 @@ struct Conservation {
     bool holds() const { return left == right; }
 };
 
-/// Each unit receives as many triangles, parts, edges and reads as another sends. In functional mode, only the counts
-/// that exist there.
+/// Each unit receives as many triangles, parts, edges and reads as its source sends. In functional mode, includes only
+/// counts that exist there.
 std::vector<Conservation> conservation(const Simulation& simulation);
 
 /// The combined result of the transport check and these equations.

@@ -23,7 +23,7 @@ unsigned ReadCheck::transport_dbg(MemoryRequest& request) {
 void ReadCheck::compare(const MemoryRequest& asked, const MemoryRequest& answer) {
     if (asked.command != tlm::TLM_READ_COMMAND || !answer.is_ok())
         return;
-    const unsigned bytes = asked.entry_bytes;  // of a cache's line more than of a table's entry
+    const unsigned bytes = asked.entry_bytes;  // wider for a cache's line than for a table's entry
     std::vector<unsigned char> held(bytes);
     for (unsigned k = 0; k < asked.count; ++k) {
         MemoryRequest look{tlm::TLM_READ_COMMAND, 1, bytes, {asked.address[k]}, held.data()};

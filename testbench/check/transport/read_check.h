@@ -21,9 +21,9 @@ struct ReadResult {
 };
 
 /// Inserted at a unit's memory port. Forwards all transactions and compares the data of each read with the memory's
-/// contents at the requested addresses (debug transport). It detects a flipped bit even if no decision changes. Denies
-/// DMI. Optional: timed mode takes a sixth longer, functional mode, whose reads then use transactions, three times as
-/// long.
+/// contents at the requested addresses (debug transport), which detects a flipped bit even if no decision changes.
+/// Denies DMI. Optional: timed mode takes a sixth longer; functional mode, whose reads then use transactions, three
+/// times as long.
 class ReadCheck : public sc_core::sc_module {
   public:
     tlm_utils::passthrough_target_socket<ReadCheck, 32, MemoryProtocol> socket{"socket"};

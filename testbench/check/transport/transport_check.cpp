@@ -19,7 +19,7 @@ class Hash {
     std::uint64_t value() const { return state_; }
 
   private:
-    std::uint64_t state_ = 1;  // so that an item of zeros counts
+    std::uint64_t state_ = 1;  // not 0, so that items of zeros change the hash
 };
 
 void add_screen(Hash& hash, const datapath::ScreenPosition& screen) {
@@ -64,7 +64,7 @@ std::uint64_t hash_to_finish(const datapath::Triangle& triangle) {
     return hash.value();
 }
 
-/// Hash of a triangle that is to be split, and of what the tests found of its split edges.
+/// Hash of a triangle that will be split, and of the test results of its split edges.
 std::uint64_t hash_to_split(const datapath::TrianglePass& pass) {
     Hash hash;
     for (const datapath::Vertex& vertex : pass.triangle.vertices)

@@ -25,10 +25,10 @@ struct WorkResult {
 /// Checks that no triangle is lost, duplicated or altered between units. The expected triangles follow from earlier
 /// decisions, and each must arrive exactly once with every bit unchanged.
 ///
-///   decided   a base triangle as the host has it, and each child of a decided triangle
-///   split     of families, each triangle that was decided and split, as it comes back from the queue
+///   decided   a base triangle as the host sends it, and each child of a decided triangle
+///   split     with families, each triangle that was decided and split, as it returns from the queue
 ///   finished  each triangle that was decided and not split
-///   lit       each finished triangle that is not culled; its N's are transformed N', its intensities lit N's
+///   lit       each finished triangle that is not culled; its N's is the transformed N', its intensities those of N's
 ///
 /// Keeps a sum of 64-bit hashes, expected minus arrived, per base triangle and one for all lit triangles, instead of a
 /// table of triangles. Differences cancel with a probability of 2^-64. The scoreboard checks the decisions; this checks
@@ -63,7 +63,7 @@ class TransportCheck : public tlm::tlm_analysis_if<datapath::TrianglePass>,
     };
     struct Base {
         Balance decided;
-        Balance split;  // of families
+        Balance split;  // with families
         Balance finished;
     };
 

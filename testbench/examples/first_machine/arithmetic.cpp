@@ -6,7 +6,7 @@
 
 using namespace tessera::datapath;
 
-// The midpoint of an edge, displaced: the machine's arithmetic without the machine.
+// Computes the displaced midpoint of an edge with the machine's arithmetic alone.
 int main() {
     const Formats formats;
     const DisplacementParameters displacement{1 << formats.position.fraction, 0};

@@ -7,7 +7,7 @@
 #include <tlm>
 #include <vector>
 
-/// Memory from address 0 on. 20 ns a transfer.
+/// Memory from address 0. 20 ns per transfer.
 class Memory : public sc_core::sc_module {
   public:
     tlm_utils::multi_passthrough_target_socket<Memory> bus{"bus"};
@@ -33,7 +33,7 @@ class Memory : public sc_core::sc_module {
     }
 };
 
-/// The device's registers lie at `registers`, memory everywhere else.
+/// Maps the device's registers at `registers`, memory everywhere else.
 class Router : public sc_core::sc_module {
   public:
     static constexpr std::uint64_t registers = 0x4000'0000;

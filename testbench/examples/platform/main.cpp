@@ -12,7 +12,7 @@
 #include "processor.h"
 #include "testbench/setup/prepare_scene.h"
 
-// A processor draws frames of a bump that grows, by a tessera device that it reaches over a bus.
+// A processor draws frames of a growing bump, with a tessera device on a bus.
 // Usage: platform functional|timed [FRAMES]
 
 namespace {
@@ -20,7 +20,7 @@ namespace {
 constexpr std::uint32_t ring_records = 20'000;
 constexpr int frames_at_most = 99;
 
-/// A square of two triangles with a bump, seen from a camera that goes round it.
+/// A square of two triangles with a bump, seen from a camera that orbits it.
 tessera::Scene scene_of(int frame, int frames) {
     tessera::Scene scene;
     scene.vertices = {{{0, 0, 0}, {0, 0}, {0, 0, 1}},
@@ -33,7 +33,7 @@ tessera::Scene scene_of(int frame, int frames) {
         for (int x = 0; x < 64; ++x)
             scene.map.push_back(static_cast<float>(std::exp(-(std::pow(x - 31.5, 2) + std::pow(y - 31.5, 2)) / 200)));
     tessera::SceneSettings& settings = scene.settings;
-    settings.formats.summed_height_bits = 32;  // of the device: not to be chosen for each frame
+    settings.formats.summed_height_bits = 32;  // fixed by the device, not chosen per frame
     settings.displacement.scale = 0.4 * (frame + 1) / frames;
     const double angle = 0.5 * frame / frames;
     settings.camera.eye = {0.5 + 1.6 * std::sin(angle), 0.5 - 1.6 * std::cos(angle), 1.2};
@@ -45,13 +45,13 @@ tessera::Scene scene_of(int frame, int frames) {
     return scene;
 }
 
-/// Where a frame's inputs and its ring lie in memory.
+/// Addresses in memory of a frame's inputs and its ring.
 struct Places {
     std::uint64_t tables, triangles, ring;
 };
 
 Places write_frame(const tessera::PreparedScene& scene, Memory& memory) {
-    const std::uint64_t tables = 0;  // at the addresses of their layouts
+    const std::uint64_t tables = 0;  // at their layouts' addresses
     const tessera::datapath::TableLayout& last = scene.registers.height_table;
     const std::uint64_t triangles = (last.base + last.bytes() + 3) / 4 * 4;
     tessera::write_tables(scene, [&](std::uint64_t address, const unsigned char* bytes, std::size_t count) {
@@ -65,7 +65,7 @@ Places write_frame(const tessera::PreparedScene& scene, Memory& memory) {
     return {tables, triangles, next};
 }
 
-/// Draws a frame and reads its triangles. Returns how many; negative: the device's error.
+/// Draws a frame and reads its triangles. Returns their number; negative: the device's error.
 int draw(tessera_driver& driver, const tessera::PreparedScene& scene, const Places& places, Picture& picture) {
     const tessera::datapath::Registers& r = scene.registers;
     int result = tessera::program_registers(driver.platform, r);

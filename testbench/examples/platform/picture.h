@@ -19,7 +19,7 @@ class Picture {
           grey_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 32),
           nearest_(grey_.size(), std::numeric_limits<double>::max()) {}
 
-    /// screen_fraction: bits of the screen's format.
+    /// screen_fraction: fraction bits of the screen format.
     void draw(const tessera_finished_triangle& triangle, int screen_fraction) {
         std::array<double, 3> x, y;
         for (std::size_t k = 0; k < 3; ++k) {
@@ -44,7 +44,7 @@ class Picture {
         }
     }
 
-    /// As a PGM file. False: it cannot be written.
+    /// Writes a PGM file. Returns false on failure.
     bool write(const std::string& name) const {
         std::FILE* const file = std::fopen(name.c_str(), "wb");
         if (file == nullptr)

@@ -11,7 +11,7 @@
 #include "bus.h"
 #include "modules/device/driver/tessera_driver.h"
 
-/// A processor, loosely timed: runs a program, which is a C++ function, and gives it the bus.
+/// A loosely timed processor: runs a program, which is a C++ function with access to the bus.
 class Processor : public sc_core::sc_module {
   public:
     tlm_utils::simple_initiator_socket<Processor> bus{"bus"};
@@ -23,7 +23,7 @@ class Processor : public sc_core::sc_module {
         SC_THREAD(run);
     }
 
-    /// 0, or 1 if the bus answers by an error. The host of the simulation is little endian, as the bus is.
+    /// Returns 0, or 1 on a bus error. The simulation's host is little endian, as is the bus.
     int access(tlm::tlm_command command, std::uint64_t address, void* data, std::size_t length) {
         tlm::tlm_generic_payload payload;
         payload.set_command(command);
@@ -38,14 +38,14 @@ class Processor : public sc_core::sc_module {
             time_.sync();
         return payload.is_response_ok() ? 0 : 1;
     }
-    /// Or for 10 us: no interrupt says that the ring is full.
+    /// Waits for the interrupt or for 10 us: a full ring raises no interrupt.
     void wait_for_interrupt() {
         time_.sync();
         if (!interrupt.read())
             wait(sc_core::sc_time(10, sc_core::SC_US), interrupt.posedge_event());
     }
 
-    /// What the driver needs to reach the device.
+    /// The platform functions that the driver needs.
     tessera_platform platform() {
         return {this,
                 [](void* self, std::uint32_t offset, std::uint32_t* value) {

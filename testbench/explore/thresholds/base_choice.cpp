@@ -46,7 +46,7 @@ BaseChoice lattice_choice(std::int64_t spacing, bool alternate, std::int64_t map
 
 std::vector<BaseChoice> rank_lattices(const Job& job, std::int64_t map_width, std::int64_t map_height,
                                       std::uint64_t most_triangles) {
-    constexpr std::int64_t largest_spacing = 128;  // edges of twice as much would need more generations than there are
+    constexpr std::int64_t largest_spacing = 128;  // at twice this, edges would need more generations than exist
     std::vector<BaseChoice> choices;
     const bool repeats_u = job.map.address_u == Addressing::repeat, repeats_v = job.map.address_v == Addressing::repeat;
     for (std::int64_t spacing = 2; spacing <= largest_spacing; spacing *= 2) {
@@ -112,7 +112,7 @@ std::vector<BaseChoice> usual_bases(const Job::Mesh& mesh, std::int64_t map_widt
     };
     const std::int64_t largest = std::max(map_width, map_height);
     for (std::int64_t spacing = 4; spacing <= largest / 2; spacing *= 2) {
-        // a power of two, and half way to the next
+        // a power of two, and one and a half times it
         for (const std::int64_t texels : {spacing, spacing * 3 / 2}) {
             BaseChoice plane;
             plane.kind = BaseChoice::Kind::plane;

@@ -50,7 +50,7 @@ std::vector<RankPoint> rank_curve(MachineSetup& setup, const Job& job, const Tex
             on_progress(1 - static_cast<double>(value) / (search.highest() + 1.0));
             if (!point.outcome.complete)
                 break;
-            // Of thresholds with one mesh the lowest is kept: it promises most.
+            // Of the thresholds with the same mesh, the lowest is kept: it guarantees the smallest error.
             if (curve.size() > first && curve.back().outcome.triangles == point.outcome.triangles)
                 curve.pop_back();
             curve.push_back(point);

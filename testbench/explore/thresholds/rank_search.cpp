@@ -18,7 +18,7 @@ namespace {
 constexpr std::int64_t usual_bits = 8;
 constexpr std::int64_t highest_generation_limit = 15;  // a lattice of 128 texels needs 14
 
-/// Counts a mesh's triangles and, if asked to, measures them.
+/// Counts a mesh's triangles and, optionally, measures them.
 struct Meter {
     struct Note {};
 
@@ -89,7 +89,7 @@ Outcome RankSearch::outcome(std::uint32_t threshold, std::uint64_t limit, bool m
     datapath::TestParameters& tests = setup_.registers.tests;
     (goal_.largest ? tests.bound_threshold : tests.rank_threshold) = static_cast<std::int32_t>(threshold);
     Meter meter{measured ? &errors_ : nullptr, 0, {}};
-    const std::uint64_t most_edges = 6 * limit + 1;  // each triangle is tested once, and cut into two or finished
+    const std::uint64_t most_edges = 6 * limit + 1;  // each triangle is tested once, then bisected or finished
     Outcome result;
     result.complete = datapath_.walk(meter, most_edges) < most_edges && meter.triangles <= limit;
     result.triangles = meter.triangles;
@@ -118,7 +118,7 @@ void RankSearch::take(std::uint32_t threshold, const Outcome& outcome) {
         found_.best = candidate;
 }
 
-/// too_high: the least threshold known to give too few triangles for the error; of a budget, too many is too low.
+/// too_high: the least threshold known to give too few triangles for the error or, with a budget, few enough.
 void RankSearch::bisect(std::uint32_t too_high) {
     const bool budget = goal_.triangles > 0;
     std::int64_t low = -1, high = too_high;  // budget: too many triangles, few enough; error: met, missed
@@ -129,7 +129,7 @@ void RankSearch::bisect(std::uint32_t too_high) {
         const bool good = met(here);
         if (good && !budget)
             take(threshold, here);
-        // More triangles than the search makes are not measured, but take less error.
+        // A mesh beyond the search's limit is not measured, but has a smaller error.
         const bool lower = budget ? here.complete : here.complete && !good;
         (lower ? high : low) = middle;
     }

@@ -9,28 +9,28 @@
 
 namespace tessera {
 
-/// Looks for the one threshold of a Rank Test, or with TuneGoal::largest of a Bound Test, on one base mesh. A threshold
-/// that falls only adds vertices, so bisection over the register's values finds the one at which the goal is just met.
-/// A bound on the largest error is the Bound Test's threshold itself, which guarantees it, unless another test stops
-/// edges that it asks for; then bisection finds a lower one.
+/// Searches the threshold of a Rank Test, or with TuneGoal::largest of a Bound Test, on one base mesh. Lowering the
+/// threshold only adds vertices, so bisection over the register's values finds the one at which the goal is just met. A
+/// bound on the largest error is the Bound Test's threshold itself, which guarantees it, unless another test stops
+/// edges that the Bound Test would split; then bisection finds a lower one.
 class RankSearch {
   public:
-    /// Throws InputError on errors as the viewer sees them, which are not searched.
+    /// Throws InputError if errors are measured as seen from the eye: such errors are not searched.
     static void refuse_view(const Job& job);
 
-    /// The job that is searched: a Rank Table with the entries that the goal needs, and the cut that goes with it.
+    /// The job to search: with a Rank Table that has the entries needed by the goal, and the matching triangulation.
     static Job job_for(const Job& job, const TuneGoal& goal);
 
-    /// setup: of such a job; its threshold changes. All must outlive it.
+    /// setup: of such a job; its threshold is modified. All must outlive the search.
     RankSearch(MachineSetup& setup, const Job& job, const TexelError& errors, const TuneGoal& goal);
 
     ThresholdSearch::Found search();
 
-    /// The mesh of a register's value. Stops at `limit` triangles. measured: else they are only counted.
+    /// The mesh for a register value. Stops at `limit` triangles. measured: measure errors too, not only count.
     Outcome outcome(std::uint32_t threshold, std::uint64_t limit, bool measured);
-    /// At which no edge splits, or as few as a job file can say.
+    /// The register value at which no edge splits, or the highest that a job file can express.
     std::uint32_t highest() const { return highest_; }
-    /// tests.rank_threshold or tests.bound_threshold of a register's value: in the middle of those that give it.
+    /// tests.rank_threshold or tests.bound_threshold for a register value: the middle of those that round to it.
     double threshold_of(std::uint32_t threshold) const;
 
   private:

@@ -24,7 +24,7 @@ std::uint64_t hash_of(const Vertex& v) {
     return mix_hash(point_hash(v.position), std::uint64_t{v.texture.u} << 32 | v.texture.v);
 }
 
-/// Which of Node::children a split with this mask and diagonal is.
+/// Index into Node::children of a split with this mask and diagonal.
 std::size_t way(unsigned split, bool second) {
     constexpr std::array<std::size_t, 8> by_split{0, 0, 1, 4, 2, 6, 8, 3};
     const bool two = split == 3 || split == 5 || split == 6;
@@ -200,7 +200,7 @@ Outcome RefinementForest::count(const datapath::TestParameters& tests, datapath:
 Outcome RefinementForest::measure(const datapath::TestParameters& tests, datapath::Triangulation triangulation,
                                   std::uint64_t limit) {
     TexelError::Sum sum;
-    std::uint8_t inserted = 1;  // the generation its edges would insert, were they split
+    std::uint8_t inserted = 1;  // the generation of the vertices inserted if its edges split
     Outcome outcome = walk(tests, triangulation, limit, [&](Node& node) {
         if (!node.measured) {
             node.error = errors_->of(

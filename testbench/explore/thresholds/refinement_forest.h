@@ -12,25 +12,25 @@
 
 namespace tessera {
 
-/// The mesh that one set of thresholds gives.
+/// The mesh produced by one set of thresholds.
 struct Outcome {
     std::uint64_t triangles = 0;
     bool complete = true;         ///< false: stopped at the limit; the rest is then meaningless
     double rms = 0;               ///< of TexelError, weighted; model units
     double max = 0;               ///< model units
-    std::uint8_t generation = 0;  ///< the highest of a vertex; counted where it is measured
+    std::uint8_t generation = 0;  ///< highest generation of a vertex; only with measurement
 };
 
-/// All triangles that the datapath makes of a job at any thresholds. Each is made once, when first reached, and each
-/// edge keeps what its tests compare (the largest difference of normals, the difference of sums, pixels), not their
-/// decisions. New thresholds then cost three comparisons per edge, about a thirtieth of the datapath's work. The mesh
-/// equals the datapath's, bit for bit (tested).
+/// All triangles that the datapath can make of a job with any thresholds. Each is made once, when first reached, and
+/// each edge stores the values that its tests compare (the largest difference of normals, the difference of sums,
+/// pixels), not their decisions. Other thresholds then cost three comparisons per edge, about a thirtieth of the
+/// datapath's work. The mesh equals the datapath's, bit for bit (tested).
 ///
 /// Memory: about 200 bytes per triangle and 200 per edge reached. Registers other than the tests' thresholds and the
 /// triangulation come from the setup and must not change.
 class RefinementForest {
   public:
-    /// `setup` must outlive it. `errors`: what measures a triangle; may be null for a forest that only counts.
+    /// `setup` must outlive it. `errors`: measures triangles; may be null for a forest that only counts.
     RefinementForest(const MachineSetup& setup, const TexelError* errors);
 
     /// Counts the triangles; stops at `limit`.
@@ -38,7 +38,7 @@ class RefinementForest {
     /// Counts and measures them.
     Outcome measure(const datapath::TestParameters& tests, datapath::Triangulation triangulation, std::uint64_t limit);
 
-    /// The finished triangles' corners, as the datapath has them.
+    /// The finished triangles' corners, as in the datapath.
     std::vector<std::array<datapath::Vertex, 3>> mesh(const datapath::TestParameters& tests,
                                                       datapath::Triangulation triangulation);
 
@@ -55,9 +55,9 @@ class RefinementForest {
     struct Node {
         std::array<Edge, 3> edges;  ///< copies: a walk reads them one after another
         std::array<std::uint32_t, 3> vertices;
-        std::array<std::uint32_t, 10> children;  ///< first child, by how it was split; 0: not made yet
+        std::array<std::uint32_t, 10> children;  ///< first child, by kind of split; 0: not made yet
         std::uint32_t base;
-        std::uint8_t shorter_is_second = 0;  ///< bit k: with edge k alone whole
+        std::uint8_t shorter_is_second = 0;  ///< bit k: with only edge k unsplit
         bool measured = false;
         TexelError::Sum error;
     };
@@ -76,7 +76,7 @@ class RefinementForest {
     const TexelError* errors_;
     std::vector<datapath::Vertex> vertices_;
     std::vector<Edge> edges_;
-    std::unordered_map<std::uint64_t, std::uint32_t> edge_of_;  // by its ends, the smaller number first
+    std::unordered_map<std::uint64_t, std::uint32_t> edge_of_;  // by its ends, the smaller index first
     std::vector<Node> nodes_;                                   // base triangles first
     std::size_t roots_ = 0;
     std::vector<std::uint32_t> work_;

@@ -8,17 +8,17 @@ namespace tessera {
 
 namespace {
 
-/// Texture coordinates in half units of their format: a texel's centre is a whole number of them.
+/// Texture coordinates in half units of their format, in which a texel's centre is an integer.
 struct Point {
     std::int64_t u = 0, v = 0;
 };
 
-/// Twice the signed area of (a, b, p): above 0 where p lies to the left.
+/// Twice the signed area of (a, b, p): positive if p lies to the left.
 std::int64_t side(const Point& a, const Point& b, const Point& p) {
     return (b.u - a.u) * (p.v - a.v) - (b.v - a.v) * (p.u - a.u);
 }
 
-/// Of two triangles at an edge, one owns the points on it: the one that lies below, or left of a level edge.
+/// Of two triangles at an edge, one owns the points on it: the one below or, at a horizontal edge, to the left.
 bool owns(const Point& a, const Point& b) {
     return b.v < a.v || (b.v == a.v && b.u > a.u);
 }

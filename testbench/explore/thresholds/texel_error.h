@@ -21,7 +21,7 @@ namespace tessera {
 class TexelError {
   public:
     struct Sum {
-        double squares = 0, weight = 0;  ///< weight: base surface a texel stands for
+        double squares = 0, weight = 0;  ///< weight: area of the base surface per texel
         double max = 0;
 
         void add(const Sum& other) {

@@ -16,7 +16,7 @@ constexpr int octave = levels_per_octave;
 constexpr int widest_ratio = 4 * octave;
 constexpr std::size_t most_polished = 6;
 constexpr int most_moves = 20;
-constexpr double swept_triangles = 1e7;  // of all meshes of a sweep together
+constexpr double swept_triangles = 1e7;  // total over all meshes of a sweep
 constexpr double fewest_swept = 400, most_swept = 10000;
 
 datapath::Triangulation machine_name(Triangulation triangulation) {
@@ -51,7 +51,7 @@ ThresholdSearch::ThresholdSearch(RefinementForest& forest, const MachineSetup& s
       height_test_(job.hardware.height_test),
       height_threshold_(height_threshold_of(height_test_)) {}
 
-// A threshold below its register's first step is 0; one above all that can be compared with it lets nothing pass.
+// A threshold below its register's first step becomes 0; one above all possible values lets nothing pass.
 
 ThresholdSearch::Levels ThresholdSearch::normal_levels() const {
     return {level_of(std::ldexp(1.0, -setup_.registers.formats.normal.fraction)) - 1, octave};
@@ -122,7 +122,7 @@ datapath::TestParameters ThresholdSearch::finest() const {
     return registers_of(tests);
 }
 
-/// More triangles than the budget; or an error within its bound, so that there may be fewer.
+/// The mesh exceeds the budget, or its error is within the bound, so that fewer triangles may do.
 bool ThresholdSearch::too_fine(const Shape& shape, const Place& place) {
     if (goal_.triangles == 0)
         return goal_.met(measured(shape, place).point.outcome);
@@ -131,7 +131,7 @@ bool ThresholdSearch::too_fine(const Shape& shape, const Place& place) {
                 .complete;
 }
 
-/// The finest level within the budget. low < high are widened until it lies between.
+/// The finest level within the budget. low < high are widened until they enclose it.
 std::optional<int> ThresholdSearch::bisect(const Levels& levels, int low, int high, const Shape& shape,
                                            const PlaceAt& at) {
     low = std::clamp(low, levels.finest, levels.coarsest);
@@ -155,7 +155,7 @@ std::optional<int> ThresholdSearch::bisect(const Levels& levels, int low, int hi
     return high;
 }
 
-/// The coarsest level within the error's bound, but for islands narrower than a quarter of an octave.
+/// The coarsest level within the error bound, except for islands narrower than a quarter of an octave.
 std::optional<int> ThresholdSearch::descend(const Levels& levels, int high, const Shape& shape, const PlaceAt& at) {
     high = std::clamp(high, levels.finest, levels.coarsest);
     while (high < levels.coarsest && too_fine(shape, at(high)))
@@ -230,7 +230,7 @@ ThresholdSearch::Candidate ThresholdSearch::measured(const Shape& shape, const P
     return candidate;
 }
 
-/// Whether it is the best so far.
+/// Returns whether the candidate is the best so far.
 bool ThresholdSearch::take(const Candidate& candidate) {
     if (!goal_.met(candidate.point.outcome) || (found_.best && !better(candidate.point, found_.best->point, goal_)))
         return false;
@@ -257,7 +257,7 @@ void ThresholdSearch::step_done() {
         on_progress_(std::min(1.0, static_cast<double>(steps_) / expected_steps_));
 }
 
-/// To be searched, the job's own first.
+/// The units to search, the job's own first.
 std::vector<SummedHeightUnit> ThresholdSearch::units() const {
     const SummedHeightUnit own = job_.tests.summed_height_unit;
     if (!space_.summed_height || !space_.summed_height_unit || height_test_ != HeightTest::summed_height)
@@ -284,7 +284,7 @@ void ThresholdSearch::explore() {
         }
     if (!space_.generation_limit || !job_.tests.generation || !found_.best)
         return;
-    // Each test alone too: what it does best it may do at another limit than the best so far.
+    // Each test alone too: it may perform best at another generation limit than the best so far.
     for (const int ratio : ratios)
         if (ratio == normal_alone || ratio == summed_height_alone) {
             shape = found_.best->shape;
@@ -345,8 +345,8 @@ bool ThresholdSearch::refine_ratio() {
     return found;
 }
 
-/// A coarse grid of both thresholds, from an octave below where each meets the goal alone: neither counts nor
-/// errors are quite regular, and there are islands that lie on no line of just met goals.
+/// Sweeps a coarse grid of both thresholds, from an octave below the level at which each meets the goal alone: neither
+/// counts nor errors are quite regular, and some good points lie on no line of just met goals.
 void ThresholdSearch::sweep(SummedHeightUnit unit) {
     Shape shape = found_.best->shape;
     shape.unit = unit;
@@ -373,7 +373,7 @@ void ThresholdSearch::sweep(SummedHeightUnit unit) {
     step_done();
 }
 
-/// The thresholds that may move.
+/// The thresholds that may be moved.
 std::vector<int ThresholdSearch::Place::*> ThresholdSearch::axes(const Shape& shape) const {
     std::vector<int Place::*> result;
     if (space_.normal && shape.ratio != summed_height_alone)
@@ -385,10 +385,10 @@ std::vector<int ThresholdSearch::Place::*> ThresholdSearch::axes(const Shape& sh
     return result;
 }
 
-/// To the best neighbour while there is a better one, in ever smaller steps.
+/// Moves to the best neighbour, in ever smaller steps, until none is better.
 void ThresholdSearch::polish(Candidate from) {
     const std::vector<int Place::*> moving = axes(from.shape);
-    // A threshold far below its first step is 0, and a step from there still is.
+    // A threshold far below its first step is 0, and one step further it still is.
     from.place.normal = std::max(from.place.normal, normal_levels().finest);
     from.place.summed_height = std::max(from.place.summed_height, summed_height_levels(from.shape.unit).finest);
     from.place.view = std::max(from.place.view, view_levels().finest);

@@ -13,7 +13,7 @@
 
 namespace tessera {
 
-/// The goal of a search: `triangles` or `error` is set.
+/// The goal of a search: exactly one of `triangles` and `error` is set.
 struct TuneGoal {
     std::uint64_t triangles = 0;       ///< at most this many, with the least error; 0: as few as the error allows
     double error = 0;                  ///< model units, at most; with the fewest triangles
@@ -25,9 +25,9 @@ struct TuneGoal {
     bool met(const Outcome& outcome) const { return outcome.complete && (triangles > 0 || error_of(outcome) <= error); }
 };
 
-/// What the search may change. The rest stays as in the job.
+/// Parameters that the search may change. All others stay as in the job.
 struct TuneSpace {
-    /// Thresholds. summed_height: or of a Curvature Test, if the job has one.
+    /// Thresholds. summed_height: or the Curvature Test's, if the job has one.
     bool normal = true, summed_height = true, view = false;
     bool summed_height_unit = true, triangulation = true, generation_limit = true;
 };
@@ -42,23 +42,23 @@ struct TunedPoint {
 /// Whether a meets the goal better than b.
 bool better(const TunedPoint& a, const TunedPoint& b, const TuneGoal& goal);
 
-/// Looks for the best thresholds on one base mesh.
+/// Searches the best thresholds on one base mesh.
 ///
-/// A threshold that falls gives more triangles, nearly without exception, and mostly less error. So for one
-/// ratio of the Normal Test's threshold to the Summed Height Test's there is one level at which the goal is just
-/// met: of a budget found by bisection, of a bound on the error by going down from the coarsest mesh, since
-/// errors are less regular. A ratio counts from that of the two thresholds which meet the goal alone, each with
-/// the other test off: at 0 both tests carry alike, at +-4 octaves one does nearly all.
+/// Lowering a threshold nearly always gives more triangles, and mostly less error. So for each ratio of the Normal
+/// Test's threshold to the Summed Height Test's there is one level at which the goal is just met: for a budget it is
+/// found by bisection, for a bound on the error by descending from the coarsest mesh, since errors are less regular. A
+/// ratio of 0 is that of the two thresholds that meet the goal alone, each with the other test off: there both tests
+/// contribute alike; at +-4 octaves one test does nearly all.
 ///
 /// explore() tries each test alone and ratios two octaves apart, in both units of the Summed Height Test, and
-/// generation limits, for each test alone and for the best. refine() betters the best: triangulation, ratios,
-/// generation limit, View Test's threshold, one after the other until none helps; then tries a coarse grid of both
-/// thresholds in both units, and moves those of the best few in ever smaller steps; and last sets each in the middle
-/// of those that give the same mesh, so that no edge's decision hangs by a rounding. Nothing is random: the same job,
-/// goal and space end in the same thresholds.
+/// generation limits for each test alone and for the best. refine() improves the best: it varies triangulation, ratio,
+/// generation limit and the View Test's threshold in turn until none helps; then tries a coarse grid of both thresholds
+/// in both units, and moves those of the best few in ever smaller steps; last, it sets each threshold to the middle of
+/// those that give the same mesh, so that no decision depends on rounding. Deterministic: the same job, goal and space
+/// give the same thresholds.
 class ThresholdSearch {
   public:
-    /// Two searched thresholds: their ratio in levels, or one test alone. One or none: 0.
+    /// Two searched thresholds: their ratio in levels, or one test alone. One or none searched: 0.
     static constexpr int normal_alone = -(1 << 20), summed_height_alone = 1 << 20;
 
     /// View Test's threshold 0: it stops no edge.
@@ -68,11 +68,11 @@ class ThresholdSearch {
         SummedHeightUnit unit = SummedHeightUnit::sum;
         Triangulation triangulation = Triangulation::shorter;
         std::int64_t generation_limit = 12;
-        int view = no_view;  ///< level, where searched
+        int view = no_view;  ///< level, if searched
         int ratio = 0;
     };
 
-    /// Levels of the thresholds that are searched (threshold_level.h); of the others without meaning.
+    /// Levels of the searched thresholds (threshold_level.h); meaningless for the others.
     struct Place {
         int normal = 0, summed_height = 0, view = no_view;
     };
@@ -87,7 +87,7 @@ class ThresholdSearch {
         std::optional<Candidate> best;       ///< nothing: no thresholds meet the goal
         std::vector<Candidate> tried;        ///< those that met the goal, in the order tried
         std::uint64_t evaluations = 0;       ///< meshes counted or measured
-        std::optional<Outcome> least_error;  ///< with a bound on the error: the least that was seen
+        std::optional<Outcome> least_error;  ///< with a bound on the error: the least found
     };
 
     /// All must outlive it. `on_progress` is called after every shape, with an estimate of the work done, 0..1.
@@ -97,10 +97,10 @@ class ThresholdSearch {
     void explore();
     void refine();
     const Found& found() const { return found_; }
-    /// Goes on from what another search on the same base mesh found.
+    /// Continues from another search's result on the same base mesh.
     void start_from(const Found& found) { found_ = found; }
 
-    /// All thresholds searched at 0, the job's others: the most triangles it can make.
+    /// All searched thresholds at 0, the others as in the job: the most triangles it can make.
     datapath::TestParameters finest() const;
 
   private:

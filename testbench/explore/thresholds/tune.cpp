@@ -44,7 +44,7 @@ struct Explored {
     bool too_large = false;  // the base mesh alone
 };
 
-/// Progress of several threads in one figure.
+/// Combines the progress of several threads.
 class SharedProgress {
   public:
     SharedProgress(std::size_t parts, const std::function<void(const std::string&, double)>& show)

@@ -11,7 +11,7 @@ namespace tessera {
 
 namespace {
 
-/// A remark is made if less of the budget is used.
+/// Below this fraction of the budget the report has a remark.
 constexpr double well_used = 0.97;
 
 std::string goal_text(const TuneRequest& request, const ErrorUnit& unit) {

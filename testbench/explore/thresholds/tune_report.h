@@ -6,9 +6,9 @@
 
 namespace tessera {
 
-// The output of `tessera tune`. No times: the same tuning gives the same bytes.
+// The output of `tessera tune`. Contains no times: the same tuning gives the same bytes.
 
-/// For the terminal.
+/// The report for the terminal.
 std::string tune_text(const TuneRequest& request, const TuneResult& result, const TunedFigures& figures,
                       const ErrorUnit& unit);
 
@@ -19,7 +19,7 @@ std::string tune_comment(const TuneRequest& request, const TuneResult& result, c
 std::string tune_json(const TuneRequest& request, const TuneResult& result, const TunedFigures& figures,
                       const ErrorUnit& unit);
 
-/// Everything tried that met the goal, a row each; the error at texels as the search measures it, in `unit`.
+/// A row for each point tried that met the goal; the error at texels as the search measures it, in `unit`.
 std::string tried_csv(const TuneRequest& request, const TuneResult& result, const ErrorUnit& unit);
 
 }  // namespace tessera

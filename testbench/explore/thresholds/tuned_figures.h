@@ -30,7 +30,7 @@ struct ErrorUnit {
 };
 ErrorUnit error_unit(const Job& job, const BaseMesh& base, const HeightMap& map);
 
-/// `mesh` must be sorted as a run sorts it. Throws what measuring throws.
+/// `mesh` must be sorted as in a run. Throws the errors of measuring.
 TunedFigures measure_tuned(const Job& job, const BaseMesh& base, const HeightMap& map, const MachineSetup& setup,
                            const EmittedMesh& mesh);
 

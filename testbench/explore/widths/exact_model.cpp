@@ -14,7 +14,7 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
-/// Bits of a code: with them no map's sum reaches 2^52, which the golden model holds.
+/// Bits of a code for which no sum over the map reaches 2^52, the golden model's limit.
 int code_bits(const HeightMap& map) {
     const double texels = static_cast<double>(map.width) * map.height;
     return std::min(32, 51 - static_cast<int>(std::ceil(std::log2(texels))));
@@ -39,15 +39,15 @@ golden::Map exact_map(const Job& job, const HeightMap& map) {
     return {map.width, map.height, mode_of(job.map.address_u), mode_of(job.map.address_v), codes};
 }
 
-/// The widest normals: the half vector's register is rounded to them.
+/// Sets the widest normals, since the half vector's register is rounded to their format.
 Job with_widest_normals(Job job) {
     job.formats.normal_bits = 18;
     job.formats.normal_fraction = 16;
     return job;
 }
 
-/// To 2^-30 texels, so that midpoints are exact in a double; upwards, so that what is a whole number in rational
-/// arithmetic (three quarters of a third of 256 texels) is not just below it.
+/// Rounds up to 2^-30 texels, so that midpoints are exact in a double, and a whole number in rational arithmetic (three
+/// quarters of a third of 256 texels) does not end up just below it.
 glm::dvec2 exact_texels(const glm::dvec2& t) {
     return glm::ceil(t * 0x1p30) * 0x1p-30;
 }
@@ -70,7 +70,7 @@ bool within_half_lsb(const golden::Vertex& exact, const datapath::Vertex& rounde
 ExactModel::ExactModel(const Job& job, const BaseMesh& original, const HeightMap& map) : map_(exact_map(job, map)) {
     const MachineSetup setup = make_setup(with_widest_normals(job), original, map);
     model_scale_ = setup.model_scale;
-    parameters_ = golden_parameters(setup.registers);  // transform, tests that are on, diagonal
+    parameters_ = golden_parameters(setup.registers);  // transform, enabled tests, diagonal
     const double highest = highest_code(map);
     const MapDisplacement displacement = MapDisplacement::from(job.displacement, map);
     parameters_.scale = displacement.scale * (map.range_high - map.range_low) * model_scale_.scale / highest;

@@ -11,11 +11,10 @@
 
 namespace tessera {
 
-/// The golden model on a job's own mesh, map and thresholds, none of them rounded to a format: what the
-/// machine would do with words of unlimited length. In double precision; the map's heights in steps of 2^-32 of
-/// their range (2^-27 for a map of 4096 x 4096), texture coordinates in steps of 2^-30 texels. Map and mesh
-/// are in the machine's world units; model_scale converts back. The matrix has the machine's 24 fraction bits,
-/// which no format changes.
+/// The golden model on a job's own mesh, map and thresholds without rounding to formats: the result of a machine with
+/// unlimited word length. In double precision; the map's heights in steps of 2^-32 of their range (2^-27 for a map of
+/// 4096 x 4096), texture coordinates in steps of 2^-30 texels. Map and mesh are in the machine's world units;
+/// model_scale converts back. The matrix has the machine's 24 fraction bits, which no format changes.
 class ExactModel {
   public:
     ExactModel(const Job& job, const BaseMesh& mesh, const HeightMap& map);
@@ -24,11 +23,11 @@ class ExactModel {
     const golden::Parameters& parameters() const { return parameters_; }
     const ModelScale& model_scale() const { return model_scale_; }
 
-    /// The exact corners of each of the setup's base triangles, complete (golden::complete_base_vertex). A setup leaves
-    /// out those of the mesh's triangles that collapse in its formats.
+    /// The exact corners of each of the setup's base triangles, complete (golden::complete_base_vertex). A setup omits
+    /// triangles of the mesh that collapse in its formats.
     std::vector<std::array<golden::Vertex, 3>> corners_of(const MachineSetup& setup) const;
 
-    /// Triangles of the whole mesh, by its own decisions; 0: more than `bound`.
+    /// Triangles of the whole mesh by the exact model's decisions; 0: more than `bound`.
     std::uint64_t triangles(std::uint64_t bound) const;
 
   private:

@@ -10,7 +10,7 @@ namespace {
 
 using Formats = Job::Formats;
 
-/// Sets bits and fraction; the integer part is kept, as far as there are bits for it.
+/// Sets bits and fraction; keeps the integer part as far as the bits suffice.
 std::string keep_integer(std::int64_t& bits, std::int64_t& fraction, std::int64_t wanted) {
     fraction = std::max<std::int64_t>(0, wanted - (bits - fraction));
     bits = wanted;

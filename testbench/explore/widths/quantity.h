@@ -8,29 +8,29 @@
 
 namespace tessera {
 
-/// Returned by Quantity::set() where validate() of the job refuses the formats it set, and says why.
+/// Returned by Quantity::set() if the job's validate() refuses the formats; validate() gives the reason.
 inline constexpr const char* by_the_job = "refused by the job";
 
-/// A format whose width is swept. Either its integer or its fraction bits stay as in the job; the other part takes the
-/// rest.
+/// A format whose width is swept. Either its integer or its fraction bits stay as in the job; the other part gets the
+/// remaining bits.
 struct Quantity {
     const char* name;
     const char* description;
-    const char* keys;          ///< of [formats] that a width sets
-    std::int64_t least, most;  ///< total bits that a job may give it; other keys may narrow the range
+    const char* keys;          ///< keys of [formats] set by a width
+    std::int64_t least, most;  ///< range of total bits in a job; other keys may narrow it
     /// Total bits, and fraction bits.
     std::int64_t (*bits)(const Job::Formats&);
     std::int64_t (*fraction)(const Job::Formats&);
-    /// Empty on success. Else why a job cannot have this width, and what to do; or `by_the_job`.
+    /// Returns an empty string on success; else why a job cannot have this width, and the remedy; or `by_the_job`.
     std::string (*set)(Job::Formats&, std::int64_t bits);
 };
 
 const std::vector<Quantity>& quantities();
-/// Null: no such quantity.
+/// Null if there is no such quantity.
 const Quantity* find_quantity(std::string_view name);
 
-/// The default widths of a sweep: all, of more than 16 every second, of more than 32 every fourth; the job's own is
-/// always included. Widest first.
+/// The default widths of a sweep: all possible ones, or every second of more than 16, every fourth of more than 32; the
+/// job's own is always included. Widest first.
 std::vector<std::int64_t> usual_widths(const Quantity& quantity, const Job::Formats& job);
 
 }  // namespace tessera

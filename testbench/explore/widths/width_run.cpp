@@ -19,8 +19,8 @@ namespace {
 
 using Corners = std::array<golden::Vertex, 3>;
 
-/// Visits the datapath's recursion with the golden model beside it; what is kept with a triangle is where exact
-/// arithmetic would have put its corners.
+/// Visits the datapath's recursion together with the golden model; stores with each triangle the corners of exact
+/// arithmetic.
 class Walk {
   public:
     Walk(const MachineSetup& setup, const ExactModel& exact, std::uint64_t most_triangles)
@@ -78,7 +78,7 @@ class Walk {
   private:
     /// Compares the decisions on edge k; returns the exact vertex on its midpoint.
     golden::Vertex compare_edge(const datapath::TrianglePass& pass, std::size_t k, const Corners& exact) {
-        // Displace Vertex normalises it as the Normal Test does, and counts for itself.
+        // Displace Vertex normalises it too, as the Normal Test does, and has its own counter.
         others_.degenerate_normal += pass.new_vertex[k].mean_normal == datapath::Direction{} ? 1u : 0u;
         const bool split = (pass.split >> k & 1u) != 0;
         result_.edges_split += split ? 1u : 0u;
@@ -141,9 +141,9 @@ class Walk {
     Dequantise dequantise_;
     std::vector<Corners> base_corners_;
     std::size_t next_base_ = 0;
-    std::array<golden::Vertex, 6> vertices_;  // of the pass decided last, as datapath::ChildIndices numbers them
+    std::array<golden::Vertex, 6> vertices_;  // of the last decided pass, numbered as in datapath::ChildIndices
     EmittedMesh mesh_;
-    datapath::Saturations others_;  // of what is not the bare recursion's
+    datapath::Saturations others_;  // of everything outside the bare recursion
     double squares_ = 0;
     WidthRun result_;
 };

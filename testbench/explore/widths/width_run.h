@@ -11,43 +11,43 @@
 
 namespace tessera {
 
-/// The decisions that are compared with the exact model's.
+/// The decisions that are compared with those of the exact model.
 enum class Decided { normal, summed_height, view, tex_coord, generation, highlight, split, count };
 inline constexpr std::array<const char*, static_cast<std::size_t>(Decided::count)> decided_names = {
     "NT", "SHT", "VT", "TCT", "GT", "HT", "split"};
 
 /// The results of a job with one set of formats.
 struct WidthRun {
-    // As `tessera run` has them in statistics.json and conformance.json.
+    // As in statistics.json and conformance.json of `tessera run`.
     std::uint64_t triangles = 0;
     std::uint64_t edges = 0;  ///< tested
     std::uint64_t edges_split = 0;
-    ConformanceResult conformance;  ///< each edge against the golden model from the same, rounded ends
+    ConformanceResult conformance;  ///< each edge against the golden model with the same rounded ends
     InvariantResult invariants;
     EndToEndResult end_to_end;
     datapath::Saturations saturations;
 
-    /// Compared with the exact model, which follows the machine's splits: every vertex has its exact counterpart, and
-    /// every edge is decided again from those. Edges on which a decision differs.
+    /// Number of edges on which a decision differs from the exact model, which follows the machine's splits: every
+    /// vertex has its exact counterpart, and every edge is decided again from these.
     std::array<std::uint64_t, static_cast<std::size_t>(Decided::count)> flips{};
     std::uint64_t quadrilaterals = 0;  ///< remaining where two edges were split
-    std::uint64_t diagonal_flips = 0;  ///< of these: cut along the other diagonal than with exact vertices
+    std::uint64_t diagonal_flips = 0;  ///< of these: cut along another diagonal than with exact vertices
     TexelBorderCount texel_borders;
     /// Distance of P' from its exact counterpart, over base and inserted vertices; model units.
     std::uint64_t positions = 0;
     double position_max = 0;
     double position_rms = 0;
-    double position_lsb = 0;  ///< an LSB of the position in model units
+    double position_lsb = 0;  ///< one LSB of the position in model units
 
     std::uint64_t flips_of(Decided decided) const { return flips[static_cast<std::size_t>(decided)]; }
-    /// Of the edges.
+    /// Percentage of the edges.
     double percent(std::uint64_t flipped) const {
         return edges == 0 ? 0 : 100.0 * static_cast<double>(flipped) / static_cast<double>(edges);
     }
     double split_flips_percent() const { return percent(flips_of(Decided::split)); }
 };
 
-/// The datapath on the setup, no simulation: functional mode's results. Throws ResourceError beyond `most_triangles`.
+/// Runs the bare datapath: functional mode's results. Throws ResourceError beyond `most_triangles`.
 WidthRun run_widths(const MachineSetup& setup, const ExactModel& exact, std::uint64_t most_triangles);
 
 }  // namespace tessera

@@ -24,7 +24,7 @@ struct WidthRequest {
     Job job;
     std::vector<SweptQuantity> swept;
     unsigned threads = 1;
-    /// Limits for the knee; by default a little above what the widest width costs.
+    /// Limits for the knee; by default slightly above the values of the widest width.
     std::optional<double> most_flips;  ///< percent of the edges whose split decision differs from exact arithmetic's
     std::optional<double> most_error;  ///< RMS of positions, model units
 };
@@ -33,22 +33,22 @@ struct WidthRequest {
 struct WidthRow {
     std::int64_t bits = 0, fraction = 0;
     bool of_the_job = false;  ///< the job's own width
-    std::string refused;      ///< not empty: why there is no such design; the rest is then meaningless
+    std::string refused;      ///< if not empty: why there is no such design; the rest is then meaningless
     WidthRun run;
     std::vector<SaturationFigure> saturations;
-    std::uint64_t saturated = 0;  ///< all of them together
+    std::uint64_t saturated = 0;  ///< total over all quantities
 
-    // Storage, whether or not it depends on this quantity.
+    // Storage of the design, whether or not it depends on this quantity.
     std::uint64_t base_vertex_bits = 0, queue_entry_bits = 0;
     std::uint64_t displacement_map_bytes = 0, normal_map_bytes = 0, summed_height_table_bytes = 0;
 };
 
-/// The narrowest width that, with every wider one tried, stays within the limits and violates no invariant.
+/// The narrowest width that, like every wider one tried, stays within the limits and violates no invariant.
 struct WidthKnee {
     double most_flips = 0, most_error = 0;
-    double most_local = 0;  ///< percent of the edges that differ from the golden model: check.allowed_flips
+    double most_local = 0;  ///< percent of the edges that may differ from the golden model: check.allowed_flips
     bool flips_given = false, error_given = false;
-    std::optional<std::size_t> row;  ///< none: not even the widest does
+    std::optional<std::size_t> row;  ///< none: not even the widest qualifies
 };
 
 struct WidthTable {
@@ -58,13 +58,13 @@ struct WidthTable {
 };
 
 struct WidthSweep {
-    std::uint64_t exact_triangles = 0;  ///< of the exact model's own mesh; 0: more than four times limits.triangles
+    std::uint64_t exact_triangles = 0;  ///< of the exact model's own mesh; 0 if more than four times limits.triangles
     std::vector<WidthTable> tables;
     std::string texel_borders;  ///< the warning of texel_borders.h for the first valid design; empty: none
 };
 
-/// The result does not depend on the number of threads. on_progress(what, 0..1) is called from one thread at
-/// a time. Throws what make_setup() throws for the job itself; widths it refuses become rows.
+/// The result does not depend on the number of threads. on_progress(what, 0..1) is called from one thread at a time.
+/// Throws the errors of make_setup() for the job itself; widths that it refuses become rows.
 WidthSweep sweep_widths(const WidthRequest& request, const BaseMesh& mesh, const HeightMap& map,
                         const std::function<void(const std::string&, double)>& on_progress);
 

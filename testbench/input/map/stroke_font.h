@@ -13,12 +13,12 @@ class StrokeText {
     /// Throws InputError for a character that is not in stroke_font_characters().
     explicit StrokeText(std::string_view text);
 
-    /// Whether there is nothing to see: no text, or spaces only.
+    /// Whether nothing is visible: no text, or only spaces.
     bool blank() const;
 
     double width() const;
 
-    /// From a point to the nearest stroke of the letter in whose cell it lies; infinite without one.
+    /// From a point to the nearest stroke of the letter in its cell; infinite if there is none.
     double squared_distance(double x, double y) const;
 
   private:
@@ -32,7 +32,7 @@ class StrokeText {
     std::vector<Glyph> glyphs_;
 };
 
-/// The font's characters, but for lower-case letters.
+/// The font's characters, without lower-case letters.
 std::string_view stroke_font_characters();
 
 }  // namespace tessera

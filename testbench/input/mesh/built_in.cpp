@@ -89,7 +89,7 @@ BaseMesh make_plane(std::int64_t columns, std::int64_t rows, double width, doubl
     add_rows(mesh, columns, 0, rows, [&](std::int64_t i, std::int64_t j) {
         BaseVertex vertex;
         vertex.texture = {part(i, columns), part(j, rows)};
-        // from integers, so that the plane is symmetric to the last bit
+        // from integers, so that the plane is exactly symmetric
         vertex.position = {width * part(2 * i - columns, 2 * columns), depth * part(2 * j - rows, 2 * rows), 0};
         vertex.normal = {0, 0, 1};
         return vertex;

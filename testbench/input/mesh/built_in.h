@@ -17,12 +17,12 @@ namespace tessera {
 /// 2 * columns * rows triangles. columns, rows: 1..4096.
 BaseMesh make_plane(std::int64_t columns, std::int64_t rows, double width, double depth);
 
-/// Quads of a lattice (make_lattice) along an axis of so many texels.
+/// Number of quads of a lattice (make_lattice) along an axis of `texels` texels.
 std::int64_t lattice_quads(std::int64_t texels, bool repeats, std::int64_t spacing);
 
-/// A plane whose vertices lie at centres of texels, `spacing` texels apart from the first one on, so that midpoints lie at
-/// centres too. It reaches beyond the last texels' centres of a map that `spacing` does not divide, up to `spacing` texels;
-/// where the map repeats, it closes if `spacing` divides the map. texels: the map's columns and rows, which cover
+/// A plane whose vertices lie at texel centres, `spacing` texels apart starting at the first one, so that midpoints lie
+/// at centres too. If `spacing` does not divide the map, it extends beyond the last texels' centres by up to `spacing`
+/// texels; on a repeated axis it closes if `spacing` divides the map. texels: the map's columns and rows, which cover
 /// `width` by `depth`. spacing: a power of two.
 BaseMesh make_lattice(const std::array<std::int64_t, 2>& texels, const std::array<bool, 2>& repeats,
                       std::int64_t spacing, double width, double depth);

@@ -76,7 +76,7 @@ std::optional<double> to_number(std::string_view token) {
     if (stop != end || (error != std::errc() && error != std::errc::result_out_of_range))
         return std::nullopt;
     if (error == std::errc::result_out_of_range) {
-        // 0 or HUGE_VAL: strtod tells which
+        // 0 or HUGE_VAL, according to strtod
         return std::abs(std::strtod(std::string(token).c_str(), nullptr));
     }
     return value;

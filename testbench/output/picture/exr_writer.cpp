@@ -9,7 +9,7 @@
 namespace tessera {
 
 std::string encode_exr(const LinearImage& image, ExrSamples samples) {
-    // Chromaticities' defaults are those of ITU-R BT.709, which are sRGB's.
+    // The default chromaticities are those of ITU-R BT.709, the same as sRGB's.
     Imf::Header header(image.width, image.height, 1, Imath::V2f(0, 0), 1, Imf::INCREASING_Y, Imf::ZIP_COMPRESSION);
     Imf::addChromaticities(header, Imf::Chromaticities());
     const std::vector<const char*> channels{"R", "G", "B"};

@@ -11,16 +11,15 @@ constexpr double golden_angle = 2.39996322972865332;
 constexpr std::size_t sky_directions = 64;
 constexpr std::size_t key_directions = 64;
 constexpr double key_radius = 0.15;  // tangent of the angle to the lamp's edge
-// A warm sun and a cool sky: shadows differ from the lit side in hue, too.
+// A warm sun and a cool sky, so that shadows differ from the lit side in hue, too.
 const glm::dvec3 key_strength(0.80, 0.765, 0.70);
 const glm::dvec3 fill_strength(0.13, 0.13, 0.14);
 const glm::dvec3 zenith_strength(0.33, 0.36, 0.42);
 const glm::dvec3 ground_strength(0.13, 0.12, 0.115);
-constexpr double least = 0.035;  // so that the deepest crevice is not black
+constexpr double least = 0.035;  // keeps the deepest crevice from being black
 constexpr double highlight_strength = 0.10;
 
-/// Of the angle between the first normal of a flat patch and any other: the least cosine, and the largest sine, rounded
-/// up.
+/// Least cosine and largest sine, rounded up, of the angle between the first normal of a flat patch and any other.
 constexpr double least_cosine = 0.9, largest_sine = 0.44;
 static_assert(largest_sine * largest_sine + least_cosine * least_cosine > 1);
 
@@ -74,7 +73,7 @@ Illumination::Illumination(const View& view, const Style& style, const RayScene&
     }
 }
 
-/// Appends to scratch.occluded.
+/// Traces rays to the lamp; appends the results to scratch.occluded.
 void Illumination::trace(const Lamp& lamp, const std::vector<ShadingPoint>& points, std::size_t first, std::size_t end,
                          Scratch& scratch) const {
     scratch.origins.clear();
@@ -83,7 +82,7 @@ void Illumination::trace(const Lamp& lamp, const std::vector<ShadingPoint>& poin
     scene_.occlusions(scratch.origins, lamp.direction, scratch.occluded);
 }
 
-/// Adds what all points of a flat patch receive alike to `even`, the diffuse light as a linear function of the normal.
+/// Adds the light common to all points of a flat patch to `even`, the diffuse light as a linear function of the normal.
 void Illumination::add(const Lamp& lamp, const std::vector<ShadingPoint>& points, bool flat, glm::dmat3& even,
                        std::vector<Light>& lights, Scratch& scratch) const {
     const double first = glm::dot(points.front().normal, lamp.direction);

@@ -10,26 +10,26 @@
 
 namespace tessera {
 
-/// Where a ray met the mesh, seen from the viewer's side. Positions count from the mesh's origin.
+/// The intersection of a ray with the mesh, seen from the viewer's side. Positions are relative to the mesh's origin.
 struct ShadingPoint {
     std::uint32_t triangle = 0;
-    /// Where rays to the lights begin: outside the flat triangle, on the round surface its normals stand for,
-    /// so that a coarse triangle does not shadow itself.
+    /// Origin of rays to the lights: outside the flat triangle, on the curved surface implied by its normals, so that a
+    /// coarse triangle does not shadow itself.
     glm::vec3 ray_origin{0};
     glm::dvec3 normal{0};  ///< unit, interpolated from N', on the viewer's side
 };
 
-/// Sub-pixel samples; each sees its own share of the lights, all of them together see all.
+/// Sub-pixel samples; each uses its own subset of the lights, all of them together use all.
 inline constexpr std::size_t samples_per_pixel = 8;
 
-/// The light at a point, linear: about 1 for a white surface that faces full light.
+/// The light at a point, linear: about 1 for a white surface facing full light.
 struct Light {
     glm::dvec3 diffuse{0};
     double highlight = 0;
 };
 
-/// A key light with a soft edge, a weak fill light without shadow, and a sky that is brightest overhead. The
-/// directions are fixed and the same at every pixel: no noise, no dependence on order.
+/// A key light with a soft edge, a weak fill light without shadow, and a sky that is brightest overhead. The directions
+/// are fixed and the same at every pixel: there is no noise, and order does not matter.
 class Illumination {
   public:
     Illumination(const View& view, const Style& style, const RayScene& scene);
@@ -44,8 +44,8 @@ class Illumination {
     /// A part of the surface: points that share a sub-pixel position; fast if they are neighbours.
     struct Patch {
         const std::vector<ShadingPoint>& points;
-        /// No gap is between them. If all of the first quarter of the points see a direction, or none does, the others are
-        /// then treated alike, provided that the patch is nearly flat.
+        /// The points cover the patch without gaps. If all or none of the first quarter of the points see a direction,
+        /// the others are then treated alike, provided that the patch is nearly flat.
         bool whole;
     };
 
@@ -53,10 +53,10 @@ class Illumination {
 
   private:
     struct Lamp {
-        glm::dvec3 direction;   ///< towards it
-        glm::dvec3 diffuse{0};  ///< times the cosine
+        glm::dvec3 direction;   ///< towards the lamp
+        glm::dvec3 diffuse{0};  ///< multiplied by the cosine
         double highlight = 0;
-        glm::dvec3 half{0};  ///< between it and the viewer
+        glm::dvec3 half{0};  ///< half vector between lamp and viewer
     };
 
     void trace(const Lamp& lamp, const std::vector<ShadingPoint>& points, std::size_t first, std::size_t end,
@@ -65,7 +65,7 @@ class Illumination {
              std::vector<Light>& lights, Scratch& scratch) const;
 
     const RayScene& scene_;
-    glm::dvec3 eye_;  ///< direction towards the viewer, good enough for highlights
+    glm::dvec3 eye_;  ///< direction towards the viewer, accurate enough for highlights
     glm::dvec3 fill_;
     std::vector<Lamp> lamps_[samples_per_pixel];
 };

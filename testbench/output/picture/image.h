@@ -6,10 +6,10 @@
 
 namespace tessera {
 
-/// An sRGB colour as it is stored.
+/// An sRGB colour as stored.
 using Colour = std::array<std::uint8_t, 3>;
 
-/// 8-bit sRGB, three bytes a pixel, rows from the top.
+/// 8-bit sRGB, three bytes per pixel, rows from the top.
 struct Image {
     int width = 0;
     int height = 0;
@@ -37,7 +37,7 @@ struct Image {
     }
 };
 
-/// Linear light, three floats a pixel (red, green, blue with sRGB's primaries; 1 is the PNG's white and may be
+/// Linear light, three floats per pixel (red, green, blue with sRGB's primaries; 1 is the PNG's white and may be
 /// exceeded), rows from the top.
 struct LinearImage {
     int width = 0;

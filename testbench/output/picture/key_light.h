@@ -6,8 +6,8 @@
 
 namespace tessera {
 
-/// A key light that shows a mesh well, in the viewer's frame: over a sheet (a displaced plane) a low sun from the left,
-/// so that its relief stands out; for anything round a lamp over the viewer's left shoulder.
+/// Chooses a key light suited to the mesh, in the viewer's frame: for a sheet (a displaced plane) a low sun from the
+/// left, which brings out its relief; for round shapes a lamp over the viewer's left shoulder.
 glm::dvec3 choose_key_light(const RenderMesh& mesh, const View& view);
 
 }  // namespace tessera

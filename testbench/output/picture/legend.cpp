@@ -13,8 +13,8 @@
 namespace tessera {
 namespace {
 
-// Pixels at scale 1, which is that of a surface of usual_width.
-constexpr double least_scale = 0.85;  // smaller letters are hard to read; used where they fit
+// Pixels at scale 1, the scale for a surface of usual_width.
+constexpr double least_scale = 0.85;  // smaller letters are hard to read; used if they fit
 constexpr double margin = 16;
 constexpr double title_size = 10;  // height of its letters
 constexpr double title_gap = 9;
@@ -85,7 +85,7 @@ double box_width(const Legend& legend) {
     return widest;
 }
 
-/// The scale at which it fits in a width.
+/// The largest scale at which the legend fits in a width.
 double widest_scale(const Legend& legend, int width) {
     const double bar = box_width(legend) * static_cast<double>(legend.entries.size());
     return width / (std::max(bar, text_width(title_size, legend.title)) + 2 * margin);

@@ -13,7 +13,7 @@ constexpr Colour generation_scale[] = {{255, 244, 204}, {218, 236, 176}, {160, 2
 constexpr Colour error_scale[] = {{255, 255, 214}, {255, 237, 160}, {254, 217, 118}, {254, 178, 76}, {253, 141, 60},
                                   {252, 78, 42},   {227, 26, 28},   {189, 0, 38},    {112, 0, 34}};
 
-/// Between the colours of a scale; `fraction` from 0 to 1.
+/// Interpolates between the colours of a scale; `fraction` from 0 to 1.
 template <class Scale>
 Colour between(const Scale& scale, double fraction) {
     const std::size_t count = std::size(scale);

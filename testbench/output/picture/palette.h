@@ -7,16 +7,16 @@
 
 namespace tessera {
 
-inline constexpr unsigned last_generation = 12;  // beyond it all look alike
+inline constexpr unsigned last_generation = 12;  // later generations have the same colour
 
-/// A generation's colour, pale to dark in lightness as in hue (safe for the colour-blind and in grey). It
-/// does not depend on the mesh, so pictures of different runs compare.
+/// A generation's colour, from pale to dark (safe for the colour-blind and in greyscale). It does not depend on the
+/// mesh, so that pictures of different runs are comparable.
 Colour generation_colour(unsigned generation);
 
 /// From the palette of Okabe and Ito, safe for the colour-blind.
 Colour deciding_test_colour(DecidingTest test);
 
-/// Which tests kept a triangle's edges whole that the Normal, Summed Height or Highlight Test would have split.
+/// The tests that kept a triangle's edges whole although the Normal, Summed Height or Highlight Test requested a split.
 enum class Stop : std::uint8_t { none, view, tex_coord, generation, several };
 inline constexpr unsigned stops = 5;
 
@@ -26,8 +26,8 @@ Stop stop_of(std::uint8_t stopped_by);
 /// From the palette of Okabe and Ito, too.
 Colour stop_colour(Stop stop);
 
-/// 0 pale yellow to 1 dark red, lightness falling all the way (ColorBrewer's YlOrRd, safe for the colour-blind and in
-/// grey); what lies outside has the nearer end's colour.
+/// From pale yellow (0) to dark red (1), with decreasing lightness (ColorBrewer's YlOrRd, safe for the colour-blind and
+/// in greyscale); values outside are clamped.
 Colour error_colour(double fraction);
 
 /// Linear light, 0..1 per component.

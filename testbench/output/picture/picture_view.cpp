@@ -5,7 +5,7 @@
 namespace tessera {
 namespace {
 
-constexpr double softer = 0.6;  // light and shadow, where a colour stands for a number
+constexpr double softer = 0.6;  // light and shadow, if colours represent values
 
 }  // namespace
 

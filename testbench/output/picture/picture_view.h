@@ -5,11 +5,11 @@
 
 namespace tessera {
 
-/// What a picture of a run shows.
+/// The content of a picture of a run.
 enum class PictureView {
-    overview,    ///< the surface shaded beside the same with its triangles by generation: a run's picture.png
+    overview,    ///< the shaded surface beside its triangles by generation: a run's picture.png
     shaded,      ///< the surface, lit with the displaced normals
-    wireframe,   ///< the same with its triangles' edges
+    wireframe,   ///< the shaded surface with the triangles' edges
     generation,  ///< triangles coloured by generation
     test,        ///< by the test that split their parent
     stopped,     ///< by the test that kept an edge whole
@@ -20,10 +20,10 @@ inline constexpr PictureView picture_views[] = {PictureView::overview,   Picture
                                                 PictureView::generation, PictureView::test,   PictureView::stopped,
                                                 PictureView::error};
 
-/// As on the command line, and in the names of files.
+/// The name on the command line and in file names.
 std::string_view name_of(PictureView view);
 
-/// How a view looks, except for sizes and lights. The overview is two: shaded and generation.
+/// The style of a view, except for sizes and lights. The overview has two: shaded and generation.
 Style style_of(PictureView view);
 
 }  // namespace tessera

@@ -73,7 +73,7 @@ RayScene::RayScene(const RenderMesh& mesh) {
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
     check(device, mesh.triangles.size());
     const std::shared_ptr<RTCGeometryTy> release(geometry, rtcReleaseGeometry);
-    // Copies: Embree reads up to 16 bytes at a buffer's last element, beyond the end of a vector.
+    // Copied, since Embree reads up to 16 bytes at a buffer's last element, beyond the end of a vector.
     auto* positions = static_cast<float*>(rtcSetNewGeometryBuffer(
         geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), mesh.positions.size()));
     auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,

@@ -13,14 +13,14 @@ struct RTCSceneTy;
 
 namespace tessera {
 
-/// From the mesh's origin, not from 0.
+/// Relative to the mesh's origin, not to 0.
 struct Ray {
     glm::dvec3 origin, direction;
     double near = 0;  ///< in lengths of direction
 };
 
-/// The mesh prepared for ray queries. Several threads may query it; a result depends on the mesh and the batch alone.
-/// Embree's single precision only finds the triangle: the caller computes the point.
+/// The mesh prepared for ray queries. Thread-safe; a result depends only on the mesh and the batch. Embree's single
+/// precision only finds the triangle: the caller computes the point.
 class RayScene {
   public:
     static constexpr std::uint32_t nothing = UINT32_MAX;
@@ -28,10 +28,10 @@ class RayScene {
     /// `mesh` must outlive the scene. Throws ResourceError when memory runs out.
     explicit RayScene(const RenderMesh& mesh);
 
-    /// Per ray the first triangle, or nothing. Fast if neighbours in the batch are neighbours in space.
+    /// Finds each ray's first triangle, or nothing. Fast if neighbours in the batch are neighbours in space.
     void first_hits(const std::vector<Ray>& rays, std::vector<std::uint32_t>& triangles) const;
 
-    /// Appends 1 for each origin from which a triangle is in the way, else 0.
+    /// Appends 1 for each origin from which a triangle blocks the direction, else 0.
     void occlusions(const std::vector<glm::vec3>& origins, const glm::dvec3& direction,
                     std::vector<std::uint8_t>& occluded) const;
 

@@ -17,9 +17,9 @@ namespace {
 
 constexpr int tile_side = 8;
 constexpr double line_shade = 0.16;  // of the surface's colour
-constexpr double far_in_sizes = 50;  // an eye further from the mesh than that many of its sizes is far away
+constexpr double far_in_sizes = 50;  // an eye farther from the mesh than this many mesh sizes is treated as far away
 
-/// No two samples share a row or a column of 8, so edges along the axes are smooth too.
+/// No two samples share a row or a column of 8, so that axis-aligned edges are smooth too.
 glm::dvec2 sample_position(std::size_t sample) {
     constexpr std::array<double, samples_per_pixel> row{4, 1, 6, 3, 0, 7, 2, 5};
     return {(static_cast<double>(sample) + 0.5) / samples_per_pixel, (row[sample] + 0.5) / samples_per_pixel};
@@ -137,11 +137,11 @@ class Renderer {
     }
 
   private:
-    /// What all rays that meet a triangle need of it.
+    /// Data of a triangle needed by all rays that hit it.
     struct Met {
         std::uint32_t triangle = RayScene::nothing;
         std::array<glm::dvec3, 3> positions, normals;
-        glm::dvec3 across{0}, flat{0};  // its own normal, and that of unit length
+        glm::dvec3 across{0}, flat{0};  // its own normal, and the same at unit length
         Wireframe lines;
     };
 
@@ -154,10 +154,10 @@ class Renderer {
         std::vector<Light> lights;
         std::vector<glm::dvec3> sums;  // linear light, one plane per style
         Illumination::Scratch scratch;
-        std::array<Met, 256> met;  // a cache, by number modulo its size: neighbouring pixels meet the same triangles
+        std::array<Met, 256> met;  // a cache, by number modulo its size: neighbouring pixels hit the same triangles
     };
 
-    /// False if no part of the mesh is visible in it.
+    /// Returns false if no part of the mesh is visible in the tile.
     bool render_tile(Tile& tile, int left, int top, int right, int bottom) {
         const std::size_t pixels = static_cast<std::size_t>((right - left) * (bottom - top));
         tile.sums.assign(pixels * paints_.size(), glm::dvec3(0));
@@ -175,14 +175,14 @@ class Renderer {
         return true;
     }
 
-    /// The image's colours are those of the linear light as written, in single precision.
+    /// The image's colours are computed from the linear light as written, in single precision.
     static void set_pixel(Picture& picture, int x, int y, const glm::vec3& light) {
         picture.image.set(x, y, to_srgb(light));
         if (!picture.linear.values.empty())
             std::copy_n(&light[0], 3, &picture.linear.values[picture.linear.offset(x, y)]);
     }
 
-    /// Adds one sample of every pixel in the tile to the sums; false if none hit the mesh.
+    /// Adds one sample of every pixel in the tile to the sums; returns false if none hit the mesh.
     bool add_sample(Tile& tile, std::size_t sample, int left, int top, int right, int bottom) const {
         auto& [rays, at, hits, points, lights, sums, scratch, met] = tile;
         const glm::dvec2 offset = sample_position(sample);
@@ -242,11 +242,11 @@ class Renderer {
         const double facing = -glm::dot(met.across, ray.direction);
         const glm::dvec3 flat = facing < 0 ? -met.flat : met.flat;
 
-        // Möller and Trumbore's barycentric coordinates, kept inside: Embree's own rounding may be a little
-        // out.
+        // Möller and Trumbore's barycentric coordinates, clamped to the triangle: Embree's rounding may place a hit
+        // slightly outside.
         const glm::dvec3 from = ray.origin - p[0];
         const glm::dvec3 turned = glm::cross(from, ray.direction);
-        const double scale = facing == 0 ? 0 : 1 / facing;  // edge-on to the last bit: any corner will do
+        const double scale = facing == 0 ? 0 : 1 / facing;  // exactly edge-on: any corner will do
         double b1 = std::clamp(glm::dot(p[2] - p[0], turned) * scale, 0.0, 1.0);
         double b2 = std::clamp(-glm::dot(p[1] - p[0], turned) * scale, 0.0, 1.0);
         if (b1 + b2 > 1) {
@@ -277,9 +277,9 @@ class Renderer {
     Illumination illumination_;
     std::vector<Paint> paints_;
     std::vector<Picture> pictures_;
-    double line_width_ = 0;  // all wireframes'; 0: there are none
-    double start_ = 0;       // of the rays, along the view direction: single precision fails for an eye too far away
-    double clearance_ = 0;   // of the rays to the lights above the surface, against single precision's rounding
+    double line_width_ = 0;  // of all wireframes; 0: there are none
+    double start_ = 0;       // of the rays, along the view direction: single precision fails for a distant eye
+    double clearance_ = 0;   // height above the surface of the rays to the lights, against single-precision rounding
 };
 
 }  // namespace

@@ -10,7 +10,7 @@
 namespace tessera {
 namespace {
 
-/// Near the middle of the mesh: a multiple of its size, rounded, so that a mesh about 0 keeps its numbers.
+/// An origin near the middle of the mesh: a multiple of its size, so that a mesh around 0 keeps its coordinates.
 glm::dvec3 choose_origin(const RecordedMesh& mesh) {
     if (mesh.triangles.empty())
         return glm::dvec3(0);

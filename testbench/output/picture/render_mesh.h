@@ -15,24 +15,24 @@ namespace tessera {
 struct RenderMesh {
     struct Triangle {
         std::array<std::uint32_t, 3> vertices{};
-        std::uint8_t generation = 0;  ///< the highest of its corners'
+        std::uint8_t generation = 0;  ///< the highest of its corners
         DecidingTest deciding_test = DecidingTest::base;
-        std::uint8_t stopped_by = 0;  ///< sum of 4 View, 8 Tex Coord, 16 Generation: what kept an edge whole
+        std::uint8_t stopped_by = 0;  ///< sum of 4 View, 8 Tex Coord, 16 Generation: the tests that kept an edge whole
     };
 
-    glm::dvec3 origin{0};              ///< positions count from here: a mesh far from 0 keeps its precision
+    glm::dvec3 origin{0};              ///< positions are relative to this: a mesh far from 0 keeps its precision
     std::vector<glm::vec3> positions;  ///< P'
     std::vector<glm::vec3> normals;    ///< N', about unit length; zero where the hardware had none
     std::vector<Triangle> triangles;
-    std::vector<float> triangle_errors;  ///< distance of each to a reference, model units; empty: unknown
-    std::uint64_t base_triangles = 0;    ///< how many these descend from, for the legend; 0: unknown
+    std::vector<float> triangle_errors;  ///< each triangle's distance to a reference, model units; empty: unknown
+    std::uint64_t base_triangles = 0;    ///< number of their base triangles, for the legend; 0: unknown
 };
 
-/// Of a run's mesh.ply. Vertices are shared where position and normal agree, in the order of their first use.
+/// From a run's mesh.ply. Vertices are shared if position and normal agree, in order of first use.
 RenderMesh make_render_mesh(const RecordedMesh& mesh);
 
-/// Of what a run emitted, without culled triangles: equal in every number to that of its mesh.ply if the emitted mesh
-/// has the file's order (EmittedMesh::sort()).
+/// From an emitted mesh without culled triangles: equal in every number to that of its mesh.ply if the emitted mesh has
+/// the file's order (EmittedMesh::sort()).
 RenderMesh make_render_mesh(const EmittedMesh& mesh, const MachineSetup& setup);
 
 }  // namespace tessera

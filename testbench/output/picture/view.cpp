@@ -14,7 +14,7 @@ struct Rectangle {
     glm::dvec2 low, high;
 };
 
-/// Shows `part` of the view's image as large as it fits, in the middle.
+/// Shows `part` of the view's image centred and as large as it fits.
 View enlarged(const View& view, const Rectangle& part, int width, int height) {
     const glm::dvec2 size = part.high - part.low;
     const double zoom = std::min(width / size.x, height / size.y);
@@ -26,7 +26,7 @@ View enlarged(const View& view, const Rectangle& part, int width, int height) {
     return result;
 }
 
-/// The part of the view's image where the mesh is; all of it if there is none, or if part of it is too near to project.
+/// The part of the view's image occupied by the mesh; all of it if none, or if part of the mesh is too near to project.
 Rectangle occupied(const View& view, const RenderMesh& mesh) {
     const glm::dvec2 size(view.width, view.height);
     const Rectangle all{glm::dvec2(0), size};

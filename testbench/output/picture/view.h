@@ -16,28 +16,28 @@ struct View {
     double near_plane = 0;  ///< model units, along the view direction
     int width = 0, height = 0;
 
-    /// Through an image point; its component along the view direction is 1, so a hit's distance is w.
+    /// The ray through an image point; its component along the view direction is 1, so a hit's distance is w.
     glm::dvec3 ray(double x, double y) const;
 
-    /// (x w, y w, w) of a point: linear, also behind the eye.
+    /// (x w, y w, w) of a point: linear, valid behind the eye too.
     glm::dvec3 project(const glm::dvec3& point) const;
 };
 
 /// The run's own camera and viewport.
 View make_view(const Job::Camera& camera);
 
-/// The same eye and perspective in an image of another size: all of `view` stays in sight.
+/// The same eye and perspective with another image size: all of `view` stays in sight.
 View resized(const View& view, int width, int height);
 
-/// Width to height of what framed() enlarges.
+/// Ratio of width to height of the part that framed() enlarges.
 double proportions(const View& view, const RenderMesh& mesh);
 
-/// The same eye and perspective, enlarged to the part of `view` where the mesh is, with a margin (a fraction of the
-/// image's sides). What `view` leaves out stays out, except for the margin and what the image's proportions add.
+/// The same eye and perspective, enlarged to the part of `view` occupied by the mesh, with a margin (a fraction of the
+/// image's sides). Parts outside `view` stay outside, except for the margin and the image's proportions.
 View framed(const View& view, const RenderMesh& mesh, int width, int height, double margin = 0.04);
 
-/// A close-up: the image point (across * width, down * height) comes to the middle, and everything gets `factor` times
-/// larger.
+/// A close-up: the image point (across * width, down * height) becomes the centre, and everything is magnified by
+/// `factor`.
 View zoomed(const View& view, double across, double down, double factor);
 
 }  // namespace tessera

@@ -12,15 +12,15 @@
 namespace tessera {
 namespace {
 
-constexpr double usual_line = 1.1;  // in a surface of usual_width
+constexpr double usual_line = 1.1;  // for a surface of usual_width
 
-/// In pixels: the options' own, or what suits a surface `width` pixels wide.
+/// Line width in pixels: the option's, or one suited to a surface `width` pixels wide.
 double line_width(const PictureOptions& options, int width) {
-    // Slower than the picture: a larger one is to show finer triangles, too.
+    // Grows more slowly than the picture, since a larger one should show finer triangles, too.
     return options.line_width > 0 ? options.line_width : usual_line * std::sqrt(std::max(1.0, width / usual_width));
 }
 
-/// A picture's surfaces, side by side, with the legend of the last one below.
+/// A picture's surfaces, side by side, and the legend of the last one below them.
 struct Layout {
     std::vector<Style> panels;
     Legend legend;
@@ -109,7 +109,7 @@ std::vector<Picture> render_views(const RenderMesh& mesh, const View& camera, co
             if (picture.image.bytes.empty())
                 picture = start_picture(layouts[group.panels[i].picture], options);
             paste(surfaces[i], group.panels[i].left, 0, picture);
-            surfaces[i] = {};  // large
+            surfaces[i] = {};  // releases its memory
         }
     }
     return result;

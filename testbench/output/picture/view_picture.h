@@ -9,15 +9,15 @@
 
 namespace tessera {
 
-/// One picture per view: the surface (the overview: twice, side by side) and below it what the colours mean. `camera`
-/// is the run's (make_view). Surfaces of the same size are rendered together, for little more than the price of one;
-/// a picture does not depend on the other views.
+/// Renders one picture per view: the surface (in the overview two, side by side) and a legend below it. `camera` is the
+/// run's (make_view). Surfaces of the same size are rendered together, at little more than the cost of one; a picture
+/// does not depend on the other views.
 ///
 /// Throws ResourceError when memory runs out.
 std::vector<Picture> render_views(const RenderMesh& mesh, const View& camera, const std::vector<PictureView>& views,
                                   const PictureOptions& options);
 
-/// The height of a picture whose options leave it open.
+/// The height of a picture if the options do not specify it.
 int picture_height(const RenderMesh& mesh, const View& camera, PictureView view, const PictureOptions& options);
 
 }  // namespace tessera

@@ -6,7 +6,7 @@
 namespace tessera {
 namespace {
 
-// Heights in widths of the line between which lines fade in, and what is left of them below.
+// Triangle heights, in line widths, over which lines fade in, and the strength that remains below.
 constexpr double fade_from = 1.4;
 constexpr double fade_to = 4.5;
 constexpr double faintest = 0.22;

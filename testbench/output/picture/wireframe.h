@@ -4,16 +4,16 @@
 
 namespace tessera {
 
-/// A triangle's edges in an image: how much of a line covers a pixel.
+/// A triangle's edges in an image: computes a pixel's coverage by a line.
 class Wireframe {
   public:
-    /// Corners as View::project() gives them; they may lie behind the eye. Lines are `width` pixels wide at any
-    /// distance, half of it on either side of the edge; an edge fades where its triangle is less than some 4 widths
-    /// high above it: a dense mesh gets a tone, not a black area or a pattern of its own.
+    /// Corners as returned by View::project(); they may be behind the eye. Lines are `width` pixels wide at any
+    /// distance, half on either side of the edge. An edge fades if its triangle is less than about 4 widths high above
+    /// it, so that a dense mesh appears as a tone, not as a black area or a moire pattern.
     Wireframe() = default;
     Wireframe(const std::array<glm::dvec3, 3>& corners, double width);
 
-    /// 0: no line at this image point, 1: fully on one.
+    /// 0: no line at this image point; 1: fully covered.
     double coverage(double x, double y) const;
 
   private:

@@ -11,7 +11,7 @@
 namespace tessera {
 namespace {
 
-/// What a unit reads for an item: how long that takes, and the bits it keeps of it.
+/// A unit's read for an item: its duration, and the bits of the item kept meanwhile.
 struct Read {
     unsigned latency = 0;
     int bits = 0;
@@ -64,8 +64,8 @@ class AreaCounter {
         areas_.push_back({name, copies * multipliers, copies * register_bits, 0, 0});
     }
 
-    /// An input buffer, and pipeline registers of the wider of the items in and out. A unit with an interval above one
-    /// uses its multipliers several times for an item.
+    /// An input buffer, and pipeline registers of the wider of the items in and out. A unit with an initiation interval
+    /// above one reuses its multipliers for an item.
     template <class In, class Out>
     void stage(const char* name, const UnitTiming& timing, unsigned multiplications = 0, unsigned servers = 1,
                Read read = {}, unsigned copies = 1) {
@@ -77,9 +77,9 @@ class AreaCounter {
              copies);
     }
 
-    /// Of a map, of a vertex or edge.
+    /// Entries of a map read for a vertex or edge.
     int entries() const { return static_cast<int>(datapath::map_entry_count(registers_.formats)); }
-    /// Multiplications for one value between texels.
+    /// Multiplications for one interpolated value.
     unsigned interpolate() const { return entries() == 1 ? 0 : Multiplications::interpolate; }
 
     unsigned culling() const { return registers_.back_face_culling ? Multiplications::faces_away : 0; }
@@ -93,7 +93,7 @@ class AreaCounter {
         unit("tessellation", 0, (design_.timing.tessellation.buffer + 1) * bits<DecidedTriangle>());
     }
 
-    /// Tessellation joins one triangle and sends another; each place of Pass or Tessellate has room for nine edges.
+    /// Tessellation joins one triangle and sends another; each place of Pass or Tessellate holds nine edges.
     void joining_families() {
         const UnitTiming& collect = design_.timing.pass_or_tessellate;
         constexpr std::uint64_t midpoints = 3, most_edges = 9;
@@ -162,15 +162,15 @@ class AreaCounter {
                  copies);
     }
 
-    /// With repeat on one axis a rectangle may wrap, and reads six entries, on both nine.
+    /// With repeat on one axis a rectangle may wrap and then reads six entries, with both nine.
     std::uint64_t corners_of_a_rectangle() const {
         const std::uint64_t across = registers_.map.address_u == datapath::AddressMode::repeat ? 3 : 2;
         const std::uint64_t along = registers_.map.address_v == datapath::AddressMode::repeat ? 3 : 2;
         return across * along;
     }
 
-    /// addresses: of a request. Those that wait, in the buffer or at the banks, are registers. entry_bits: 0: the bits are
-    /// counted elsewhere.
+    /// addresses: per request. Waiting addresses, in the buffer or at the banks, are registers. entry_bits: 0 if the
+    /// bits are counted elsewhere.
     void table(const char* name, const datapath::TableLayout& layout, int entry_bits, const MemoryTiming& timing,
                std::uint64_t addresses) {
         std::uint64_t entries = std::uint64_t{layout.rows} * layout.columns;

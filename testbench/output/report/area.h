@@ -13,20 +13,20 @@ namespace tessera {
 /// Hardware of one unit or memory of a design, counted from the design's parameters.
 struct UnitArea {
     std::string name;               ///< "transform"
-    std::uint64_t multipliers = 0;  ///< that give a result every initiation interval; those of addresses are left out
-    /// Input buffers, pipeline registers, state: the widths of the items they hold; of a memory the addresses that
-    /// wait. Left out: control, the bookkeeping of a cache.
+    std::uint64_t multipliers = 0;  ///< with one result per initiation interval; those for addresses are excluded
+    /// Input buffers, pipeline registers, state: the widths of the items they hold; for a memory, the waiting
+    /// addresses. Excluded: control, and a cache's bookkeeping.
     std::uint64_t register_bits = 0;
-    /// A table's entries, or those in its cache (tags left out), or the Triangle Queue's places on chip.
+    /// A table's entries, or those in its cache (without tags), or the Triangle Queue's places on chip.
     std::uint64_t memory_bits = 0;
-    std::uint64_t ports = 0;  ///< of a table: entries a cycle, all banks together
+    std::uint64_t ports = 0;  ///< of a table: entries per cycle, all banks together
 };
 
-/// In the order of the figures, the units of several Tessellation Tests together. queue_places: of the Triangle Queue
-/// on chip; of an unbounded one, as many as a run needed.
+/// In the order of the figures; the units of several Tessellation Tests are added up. queue_places: the Triangle
+/// Queue's places on chip; for an unbounded queue, as many as a run needed.
 std::vector<UnitArea> design_area(const Design& design, const datapath::Registers& registers, std::size_t queue_places);
 
-/// Of a run's design, all machines together.
+/// The area of a run's design, all machines together.
 std::vector<UnitArea> area_of(const Simulation& simulation);
 
 /// The sum, named "total".

@@ -12,7 +12,7 @@
 
 namespace tessera {
 
-/// The results of a run's checks; a check that the job switched off is absent.
+/// The results of a run's checks; absent for checks disabled by the job.
 struct Checks {
     std::optional<SetupResult> setup;
     std::optional<ConformanceResult> conformance;
@@ -21,7 +21,7 @@ struct Checks {
     std::optional<WorkResult> work;
     std::optional<ReadResult> reads;
     double allowed_flips = 0.5;        ///< percent of edges
-    std::vector<std::string> remarks;  ///< repairs and oddities of mesh and map; one sentence each
+    std::vector<std::string> remarks;  ///< repairs and anomalies of mesh and map; one sentence each
     std::string texel_borders;         ///< a warning, see texel_borders.h; empty: none
 
     bool passed() const {

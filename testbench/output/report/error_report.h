@@ -8,13 +8,13 @@
 
 namespace tessera {
 
-/// Figures of a mesh's error in groups: what was measured and how densely ("measurement"), the headline
-/// ("interpolated") and the other reading of the map ("nearest_texel"), height fields' error at the map's grid points
-/// ("vertical"), and where the maxima are ("worst_..."). statistics_json() makes a file of them; infinite values (no
-/// mesh) are null there.
+/// Figures of a mesh's error in groups: what was measured and how densely ("measurement"), the main figure
+/// ("interpolated") and the other sampling method ("nearest_texel"), height fields' error at the map's grid points
+/// ("vertical"), and the places of the maxima ("worst_..."). statistics_json() turns them into a file; infinite values
+/// (no mesh) are null there.
 std::vector<Figure> error_figures(const RecordedMesh& mesh, const MeshError& error);
 
-/// The same as a table for people, headline first. `job` is for remarks.
+/// The same as a table for the terminal, main figure first. `job` is used for remarks.
 std::string error_text(const Job& job, const RecordedMesh& mesh, const MeshError& error);
 
 }  // namespace tessera

@@ -10,11 +10,11 @@
 
 namespace tessera {
 
-/// The triangles of an emitted mesh that were not culled, with shared vertices, as a file holds them. Numbers
-/// only; the mesh itself is not copied.
+/// The triangles of an emitted mesh that were not culled, with shared vertices, as in a file. Indices only; the mesh
+/// itself is not copied.
 struct IndexedMesh {
-    /// A vertex: a triangle's corner. Two corners are one vertex if they agree in P, P', N' and t. In the
-    /// order of their first use.
+    /// A vertex: a triangle's corner. Two corners are one vertex if they agree in P, P', N' and t. In order of first
+    /// use.
     struct Vertex {
         std::uint32_t triangle;
         std::uint32_t corner;
@@ -30,10 +30,10 @@ struct IndexedMesh {
     static IndexedMesh from(const EmittedMesh& mesh);
 };
 
-/// The generation of a triangle: that of its youngest vertex.
+/// The generation of a triangle: the highest of its vertices.
 std::uint8_t triangle_generation(const EmittedTriangle& triangle);
 
-/// The mesh as a run's mesh.ply would hold it. ResourceError as above.
+/// The mesh as in a run's mesh.ply. ResourceError as above.
 RecordedMesh recorded_mesh(const EmittedMesh& mesh, const MeshUnits& units);
 
 }  // namespace tessera

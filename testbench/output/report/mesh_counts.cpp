@@ -9,7 +9,7 @@ namespace tessera {
 
 namespace {
 
-/// Its lowest bit: the vertex was inserted.
+/// Its lowest bit is set if the vertex was inserted.
 std::uint64_t vertex_hash(const EmittedTriangle::Corner& c) {
     std::uint64_t hash = 0;
     for (const std::int32_t word :

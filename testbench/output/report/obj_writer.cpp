@@ -22,7 +22,7 @@ std::size_t group_of(const EmittedTriangle& triangle) {
     return static_cast<std::size_t>(deciding_test_of(triangle.split_by)) * generations + triangle_generation(triangle);
 }
 
-/// The triangles' numbers in the order of their groups; stable. begins[g]: where group g begins.
+/// Triangle indices in the order of their groups; stable. begins[g]: start of group g.
 struct Grouped {
     std::vector<std::uint32_t> order;
     std::vector<std::size_t> begins;

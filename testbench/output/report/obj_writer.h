@@ -14,7 +14,7 @@ namespace tessera {
 /// normal_g3`: the test that split its parent (base: none did, it is a base triangle; normal; summed_height;
 /// both; highlight: the Highlight Test alone), and the generation of its youngest vertex. Each group comes
 /// once, by test and generation; within it, triangles are in the mesh's order (call EmittedMesh::sort()
-/// before). No material file is named: readers make up plain materials of these names. Vertices by first use
+/// before). No material file is named: readers create plain materials of these names. Vertices by first use
 /// in the mesh, shared as in indexed_mesh.h. The same mesh gives the same bytes on every compiler and machine.
 /// Errors: as in atomic_file.h.
 void write_obj(const std::filesystem::path& path, const EmittedMesh& mesh, const MeshUnits& units);

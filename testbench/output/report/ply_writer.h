@@ -6,8 +6,7 @@
 
 namespace tessera {
 
-/// Writes the triangles that were not culled as a binary little-endian PLY file, 52 bytes a vertex, 20 a
-/// triangle.
+/// Writes the triangles that were not culled as a binary little-endian PLY file, 52 bytes per vertex, 20 per triangle.
 ///
 ///     vertex: double x y z         P' in model units
 ///             float nx ny nz       N'
@@ -20,10 +19,9 @@ namespace tessera {
 ///             int base             its base triangle
 ///
 /// Positions and texture coordinates are doubles: the machine's 32 bits do not fit a float, and a float's rounding
-/// would separate the two sides of a texture seam in a run that takes this mesh as its base. The header's comments
+/// would separate the two sides of a texture seam in a run that uses this mesh as its base. The header's comments
 /// repeat all this. Order: the mesh's (call EmittedMesh::sort() before); vertices by first use, shared as in
-/// indexed_mesh.h. The same mesh gives the same bytes on every compiler and machine. Errors: as in
-/// atomic_file.h.
+/// indexed_mesh.h. The same mesh gives the same bytes on every compiler and machine. Errors: as in atomic_file.h.
 void write_ply(const std::filesystem::path& path, const EmittedMesh& mesh, const MeshUnits& units);
 
 }  // namespace tessera

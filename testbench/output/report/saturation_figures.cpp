@@ -62,7 +62,7 @@ std::string saturations_text(const std::vector<SaturationFigure>& figures) {
 
 namespace {
 
-/// Of those that saturated and have `what_then`.
+/// Sentences for the quantities that saturated and have `what_then`.
 std::vector<std::string> sentences(const std::vector<SaturationFigure>& figures,
                                    const char* SaturationFigure::*what_then) {
     std::vector<std::string> result;

@@ -8,27 +8,27 @@
 
 namespace tessera {
 
-/// How often one quantity of a run did not fit its format.
+/// Number of values of one quantity of a run that did not fit their format.
 struct SaturationFigure {
     const char* name;  ///< in the statistics' group "saturations"
     std::uint64_t count;
     const char* unit;
     const char* description;
-    const char* remedy;             ///< the key to widen, or what else helps; null: no width does
-    const char* meaning = nullptr;  ///< where no width helps: what to make of the count; null: the setup remarks on it
+    const char* remedy;             ///< the key to widen, or another remedy; null: no width helps
+    const char* meaning = nullptr;  ///< if no width helps: how to judge the count; null: the setup has a remark
 };
 
-/// Of every quantity that can saturate, in the machine (`saturations`) or on its way into it (MachineSetup), in the
-/// order of the pipeline; those of count 0 too.
+/// Figures of every quantity that can saturate, in the machine (`saturations`) or on input (MachineSetup), in pipeline
+/// order, including counts of 0.
 std::vector<SaturationFigure> saturation_figures(const MachineSetup& setup, const datapath::Saturations& saturations);
 
 /// "normal 3, screen position 12", or "none".
 std::string saturations_text(const std::vector<SaturationFigure>& figures);
 
-/// A sentence for each quantity that saturated and that something can be done about: how often, what, and what to do.
+/// A sentence for each quantity that saturated and has a remedy: count, quantity and remedy.
 std::vector<std::string> saturation_warnings(const std::vector<SaturationFigure>& figures);
 
-/// A sentence for each quantity that saturated and that no width helps: how often, what, and what that means.
+/// A sentence for each quantity that saturated and that no width helps: count, quantity and meaning.
 std::vector<std::string> saturation_notes(const std::vector<SaturationFigure>& figures);
 
 }  // namespace tessera

@@ -48,7 +48,7 @@ void format_figures(std::vector<Figure>& all, const MachineSetup& setup) {
     c.add("lighting_vertex", widths.emitted_vertex, "bit", "one vertex to Lighting");
 }
 
-/// Wires of each stream: one item, its tag included, annotations not.
+/// Width of each stream: one item with its tag, without annotations.
 void stream_figures(std::vector<Figure>& all, const MachineSetup& setup) {
     const int tag = tag_bits(setup.design);
     FigureGroup c(all, "streams");
@@ -138,7 +138,7 @@ void area_figures(std::vector<Figure>& all, const Simulation& simulation) {
     add(total_area(units));
 }
 
-/// Repeated work of the machine, beside what the mesh needs.
+/// Repeated work of the machine, compared with the minimum for the mesh.
 void useful_work_figures(std::vector<Figure>& all, const Totals& totals, const Decisions::Evaluated& evaluated,
                          const MeshCounts& mesh) {
     const std::uint64_t made = totals.positions, normals = totals.normals, tested = totals.counts.edges_tested;
@@ -300,7 +300,7 @@ std::string statistics_json(const std::vector<Figure>& figures) {
 
 namespace {
 
-/// RFC 4180: words with a comma or a quotation mark stand in quotation marks.
+/// RFC 4180: fields with a comma or a quotation mark are quoted.
 std::string csv_cell(const std::string& value) {
     if (value.find_first_of(",\"\n") == std::string::npos)
         return value;

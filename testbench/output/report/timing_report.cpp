@@ -13,7 +13,7 @@ namespace tessera {
 
 namespace {
 
-constexpr std::size_t most_named = 4;  // units of a limit
+constexpr std::size_t most_named = 4;  // units named in a limit
 
 double state_percent(const Unit& unit, State state, std::uint64_t cycles) {
     return 100 * ratio(unit.activity().cycles_in(state), cycles);
@@ -23,7 +23,7 @@ bool is_memory(const Unit& unit) {
     return dynamic_cast<const MemoryServer*>(&unit) != nullptr;
 }
 
-/// The largest share of a state with a cause: the unit that blocks, is awaited or is missing.
+/// The largest share of a state that has a cause: the unit that blocks, is awaited or is missing.
 const Activity::Share* largest_share(const Unit& unit, State state) {
     const Activity::Share* largest = nullptr;
     for (const Activity::Share& share : unit.activity().shares())
@@ -102,7 +102,7 @@ Bottleneck find_bottleneck(const Pipeline& pipeline, std::uint64_t cycles) {
 
 namespace {
 
-/// The unit that has waited longest for a cache, where that is most of the time: what it waits for, and the keys that help.
+/// The unit that waited longest for a cache, if that is most of the time: what it waits for, and the keys that help.
 std::string wait_for_a_cache(const Pipeline& pipeline, std::uint64_t cycles) {
     std::string text;
     std::uint64_t longest = cycles / 2;
@@ -117,7 +117,7 @@ std::string wait_for_a_cache(const Pipeline& pipeline, std::uint64_t cycles) {
     return text;
 }
 
-/// The unit held up longest by `by`, and for how many cycles.
+/// The unit blocked longest by `by`, and for how many cycles.
 std::pair<const Unit*, std::uint64_t> longest_wait(const Pipeline& pipeline, const Unit* by) {
     std::pair<const Unit*, std::uint64_t> longest{nullptr, 0};
     for (const Unit* unit : pipeline.units()) {
@@ -151,7 +151,7 @@ double mean_stay(const Unit& unit) {
     return ratio(unit.activity().item_cycles(), unit.activity().items_out());
 }
 
-/// The pipeline stage in which an item stays longest, except those whose purpose is to wait for others.
+/// The pipeline stage in which an item stays longest, except those that wait for others by design.
 const Unit& longest_stay(const Pipeline& pipeline) {
     const Unit* longest = &pipeline.transform;
     for (const Unit* unit : pipeline.units()) {

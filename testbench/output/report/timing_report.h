@@ -7,32 +7,31 @@
 
 namespace tessera {
 
-/// Share of the most that a unit or memory could have done in the run: items times initiation interval over cycles, or
-/// port slots taken over port slots there were. 0 to 1, 0 for a run without cycles.
+/// Fraction of its capacity that a unit or memory used in the run: items times initiation interval over cycles, or used
+/// port slots over available ones. 0 to 1; 0 for a run without cycles.
 double utilisation(const Unit& unit, std::uint64_t cycles);
 
-/// "summed_height_table" of "tessera.summed_height_table": a unit's name within the machine; in a machine but the
-/// first the whole name, "tessera_1.summed_height_table".
+/// A unit's name within the machine: "summed_height_table" of "tessera.summed_height_table"; in all machines but the
+/// first, the whole name, "tessera_1.summed_height_table".
 std::string unit_name(const sc_core::sc_object& unit);
 
-/// Does no work of its own, only passes items on: the Triangle Queue, Collect Tests, Sequence Tests.
+/// Whether the unit only passes items on: the Triangle Queue, Collect Tests, Sequence Tests.
 bool is_queue_or_join(const Unit& unit);
 
-/// Units whose utilisation lies within a per cent of the highest among them.
+/// Units whose utilisation is within a per cent of the highest.
 struct Limit {
-    std::vector<const Unit*> units;  ///< in the order of the pipeline; empty: no unit did anything
+    std::vector<const Unit*> units;  ///< in pipeline order; empty if all units were idle
     double utilisation = 0;          ///< the highest
 
-    /// "a, b and c"; of many "a and 16 others".
+    /// "a, b and c"; if there are many, "a and 16 others".
     std::string names() const;
 };
 
-/// What held a timed run back.
+/// What limited a timed run.
 struct Bottleneck {
     Limit first;
     Limit next;  ///< of the units that are not in `first`
-    /// `first` determines the run's length. If false, latency does: too few items were in flight to keep any
-    /// unit busy.
+    /// `first` determines the run's length. If false, latency does: too few items were in flight to keep any unit busy.
     bool binding = false;
 
     /// Upper bound on the speed-up: without `first` or, if latency binds, without any waiting; the work of the next
@@ -40,7 +39,7 @@ struct Bottleneck {
     double bound() const;
 };
 
-/// A unit counts as binding from this utilisation on.
+/// A unit with at least this utilisation counts as binding.
 constexpr double binding_utilisation = 0.85;
 
 Bottleneck find_bottleneck(const Pipeline& pipeline, std::uint64_t cycles);
@@ -49,13 +48,13 @@ Bottleneck find_bottleneck(const Pipeline& pipeline, std::uint64_t cycles);
 std::string bottleneck_text(const Pipeline& pipeline, std::uint64_t cycles);
 
 /// Per unit and memory: cycles by state and cause, utilisation, throughput, occupancy; per queue and join: rate and
-/// level. Tables for people.
+/// level. Formatted for reading.
 std::string timing_tables(const Pipeline& pipeline, std::uint64_t cycles);
 
-/// timing.txt: what the columns mean, those tables of each machine, and the bottleneck of the last to finish.
+/// timing.txt: an explanation of the columns, the tables of each machine, and the bottleneck of the last to finish.
 std::string timing_text(const Simulation& simulation);
 
-/// The Triangle Queue's level over time: first cycle and highest level of at most 1024 stretches.
+/// The Triangle Queue's level over time, in at most 1024 intervals: first cycle and highest level of each.
 std::string queue_levels_csv(const LevelHistory& history);
 
 }  // namespace tessera

@@ -36,7 +36,7 @@ void run_figures(std::vector<Figure>& all, const Simulation& simulation) {
     run.add("bottleneck_in_words", bottleneck_text(p, cycles), "", "why");
 }
 
-/// What a queue or a wire, which does no work, does not have.
+/// Figures that queues and wires, which do no work, lack.
 void state_figures(FigureGroup& group, const Unit& unit, std::uint64_t cycles) {
     const Activity& activity = unit.activity();
     group.add("busy", activity.cycles_in(State::busy), "cycle", "working on an item that has all it needs");

@@ -6,7 +6,7 @@
 
 namespace tessera {
 
-/// Appends the figures that only timed mode has: cycles, and what each unit and memory did in them.
+/// Appends the figures specific to timed mode: cycles, and the activity of each unit and memory.
 void timing_figures(std::vector<Figure>& all, const Simulation& simulation);
 
 }  // namespace tessera

@@ -14,7 +14,7 @@ const char* state_name(State state) {
 
 namespace {
 
-/// Of one part; "" of a whole triangle.
+/// The name of one part; "" for a whole triangle.
 const char* part_name(Parts parts) {
     constexpr std::array<const char*, 15> names = {"vertex 0", "vertex 1", "vertex 2", "normal 0", "normal 1",
                                                    "normal 2", "edge 0",   "edge 1",   "edge 2",   "edge 3",
@@ -30,7 +30,7 @@ Recorder::Recorder(Pipeline& pipeline, VcdWriter* vcd, TimelineWriter* timeline,
       vcd_(vcd),
       timeline_(timeline),
       window_(window),
-      // An item held back at random calls its unit only when its time has come, but waits at its input at once.
+      // A randomly stalled item wakes its unit only when the stall ends, but waits at its input from the beginning.
       show_every_unit_(pipeline.random_stalls()) {
     if (vcd_ != nullptr) {
         cycle_signal_ = vcd_->add(pipeline.clock.name(), "cycle", 48);
@@ -69,7 +69,7 @@ void Recorder::Track::stretch(State state, const sc_core::sc_object* by, std::ui
         unit.activity().observe(nullptr);
 }
 
-/// What was begun on before the window and is still there.
+/// Records items that were begun before the window and are still in a unit.
 void Recorder::enter_window() {
     culled_ = pipeline_.pass_or_tessellate.counts().culled;
     for (Track& track : tracks_) {
@@ -101,7 +101,7 @@ void Recorder::name_items(std::uint64_t cycle, std::uint64_t called) {
     }
 }
 
-/// What a flow does where the unit has begun on a triangle.
+/// The flow step of a unit that has begun a triangle.
 TimelineWriter::FlowStep Recorder::step_at(const Track& track) {
     if (&track.unit == &pipeline_.get_triangle) {
         if (!first_flow_)
@@ -130,7 +130,7 @@ void Recorder::show_queue_level(std::uint64_t cycle) {
     timeline_->counter("triangle_queue", "triangles waiting", cycle, shown_level_);
 }
 
-/// Cycles that show nothing new but their number.
+/// Records cycles in which only the cycle number changes.
 void Recorder::end_cycles_before(std::uint64_t cycle) {
     for (; next_cycle_ < cycle; ++next_cycle_) {
         vcd_->set(cycle_signal_, next_cycle_);

@@ -18,21 +18,21 @@ namespace tessera {
 
 /// Records a pipeline in timed mode with the writers of waveforms and of the timeline, each optional.
 ///
-/// Waveforms: the signals of the chosen units (Unit::trace_signals), at the end of each cycle in which they were
-/// called; and the cycle (tessera.clock.cycle) and the passes under way. Timeline: a track per unit with its states, by
-/// whom it is blocked, what it waits for or lacks, and the item it last began on; the Triangle Queue's level. A flow
-/// leads from unit to unit, in the order of time, through the intervals in which each began on a triangle: from Get
-/// Triangle to Tessellation, to Lighting, or if it is culled to Pass or Tessellate. Cost: none before and after the
-/// window, when the clock and the units are not observed. What is simulated does not depend on it.
+/// Waveforms: the signals of the selected units (Unit::trace_signals), at the end of each cycle in which they were
+/// called; and the cycle (tessera.clock.cycle) and the number of passes in flight. Timeline: a track per unit with its
+/// states, the unit that blocks it, what it waits for or lacks, and the item it last began; the Triangle Queue's level.
+/// A flow connects, in chronological order, the intervals in which each unit began a triangle: from Get Triangle to
+/// Tessellation, to Lighting, or if it is culled to Pass or Tessellate. Outside the window there is no cost, since
+/// clock and units are not observed. Recording does not affect the simulation.
 class Recorder : public CycleObserver {
   public:
-    /// Before the simulation begins. vcd, timeline: may be null; their windows are this one. units: those whose signals
-    /// are wanted.
+    /// Call before the simulation begins. vcd, timeline: may be null; their windows are this one. units: those whose
+    /// signals are recorded.
     Recorder(Pipeline& pipeline, VcdWriter* vcd, TimelineWriter* timeline, TraceWindow window,
              const std::vector<const Unit*>& units);
     ~Recorder() override;
 
-    /// After the run and the units' Activity::finish, which `cycles`, at least 1, is the length of.
+    /// Call after the run and the units' Activity::finish. `cycles`: length of the run, at least 1.
     void finish(std::uint64_t cycles);
 
   private:
@@ -42,7 +42,7 @@ class Recorder : public CycleObserver {
         Signals signals;
     };
     using FlowStep = TimelineWriter::FlowStep;
-    /// Passes a unit's stretches on, up to the one that reaches the window's end.
+    /// Forwards a unit's intervals, up to the one that reaches the window's end.
     struct Track : ActivityObserver {
         Track(Unit& its_unit, TimelineWriter& its_timeline, TimelineWriter::Track its_number, std::uint64_t last_cycle)
             : unit(its_unit), timeline(its_timeline), number(its_number), last(last_cycle) {}
@@ -52,10 +52,10 @@ class Recorder : public CycleObserver {
         TimelineWriter& timeline;
         TimelineWriter::Track number;
         std::uint64_t last;
-        std::uint64_t count = 0;       // items begun on
-        std::optional<Begun> item;     // the last of them, if it is known
-        bool named = false;            // the present stretch is about it
-        std::optional<FlowStep> step;  // and this is what a flow does there
+        std::uint64_t count = 0;       // items begun
+        std::optional<Begun> item;     // the last of them, if known
+        bool named = false;            // the current interval refers to it
+        std::optional<FlowStep> step;  // and this is its flow step there
     };
 
     void begin(std::uint64_t cycle) override;
@@ -80,13 +80,13 @@ class Recorder : public CycleObserver {
     std::vector<TracedUnit> traced_;
     std::deque<Track> tracks_;
     std::uint64_t culled_ = 0;
-    std::optional<std::uint32_t> first_flow_;  // triangles before it were under way when the window began
+    std::optional<std::uint32_t> first_flow_;  // earlier triangles were in flight when the window began
     std::size_t shown_level_ = 0;
     bool began_ = false;
-    std::uint64_t next_cycle_ = 0;  // the first whose waveforms are not complete
+    std::uint64_t next_cycle_ = 0;  // the first cycle with incomplete waveforms
 };
 
-/// In words as the timeline has them and waveforms/states.txt: "busy", "waiting for memory", ...
+/// Text used in the timeline and in waveforms/states.txt: "busy", "waiting for memory", ...
 const char* state_name(State state);
 
 }  // namespace tessera

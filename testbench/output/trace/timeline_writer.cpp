@@ -18,8 +18,8 @@ struct Colour {
     const char* name;
 };
 
-// chrome://tracing knows colours by these names only (color_scheme.html has them all): green, red, yellow, light grey;
-// dark grey.
+// chrome://tracing accepts only these colour names (all are in color_scheme.html): green, red, yellow, light grey; dark
+// grey.
 constexpr std::array<Colour, 4> state_colours = {
     {{"busy", "good"}, {"blocked", "terrible"}, {"waiting for memory", "yellow"}, {"starved", "grey"}}};
 constexpr const char* other_colour = "generic_work";
@@ -42,7 +42,7 @@ std::string microseconds(std::uint64_t picoseconds) {
     return text;
 }
 
-/// The member "args" of an interval, with the comma before it; "" if there are none.
+/// The member "args" of an interval, with a leading comma; "" if there are none.
 std::string arguments(std::string_view detail, const TimelineWriter::Item* item) {
     std::string members;
     if (!detail.empty())

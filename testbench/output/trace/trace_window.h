@@ -3,7 +3,7 @@
 
 namespace tessera {
 
-/// The clock cycles a trace shows, both included; all of them by default, none if last is before first.
+/// First and last clock cycle of a trace, inclusive; all cycles by default, none if last is before first.
 struct TraceWindow {
     std::uint64_t first = 0;
     std::uint64_t last = UINT64_MAX;

@@ -26,8 +26,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A stream into an AtomicFile. An error stops the simulation and is kept: an exception through SystemC would lose its
-/// type.
+/// A stream into an AtomicFile. An error stops the simulation and is stored, since an exception through SystemC would
+/// lose its type.
 class AtomicStream : private std::streambuf, public std::ostream {
   public:
     explicit AtomicStream(const fs::path& path) : std::ostream(nullptr), file_(path) { rdbuf(this); }
@@ -111,8 +111,8 @@ struct Traces::Files {
             vcd.emplace(*vcd_file, period, window_of(job));
         }
         if (job.output.timeline) {
-            // A cycle is a microsecond there, the format's unit: viewers add times in floating point, and whole numbers
-            // alone stay exact. Otherwise intervals overlap by a rounding error, which they show as nested or not at
+            // A cycle is shown as a microsecond, the format's unit: viewers add times in floating point, and only whole
+            // numbers stay exact. Otherwise intervals overlap by a rounding error, and are shown as nested or not at
             // all.
             constexpr std::uint64_t shown_cycle = 1'000'000;
             timeline_file.emplace(folder / "timeline.json");
@@ -175,7 +175,7 @@ std::string make_fst(const fs::path& folder, AtomicSet& files) {
     posix_spawn_file_actions_t actions;
     ::posix_spawn_file_actions_init(&actions);
     ::posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-    // Signals that this process waits for would be blocked in that one.
+    // Signals blocked in this process would be blocked in the child too.
     posix_spawnattr_t attributes;
     ::posix_spawnattr_init(&attributes);
     sigset_t none;

@@ -12,28 +12,28 @@
 
 namespace tessera {
 
-/// The units whose signals output.trace_units asks for: those whose name contains one of its words; all if there is
-/// none. Throws InputError on a word that no name contains.
+/// The units whose signals output.trace_units selects: those whose name contains one of its words, or all if it is
+/// empty. Throws InputError on a word that no name contains.
 std::vector<const Unit*> units_to_trace(const std::string& words, const Pipeline& pipeline);
 
-/// The traces a job requests, trace.vcd and timeline.json, written into the run's folder while the simulation runs;
+/// The traces requested by a job, trace.vcd and timeline.json, written into the run's folder during the simulation;
 /// they get their names only when complete (AtomicFile, AtomicSet). Without finish() nothing remains.
 class Traces {
   public:
     static bool wanted(const Job& job) { return job.output.vcd || job.output.timeline; }
 
-    /// Before the simulation runs. The folder must exist.
+    /// Construct before the simulation runs. The folder must exist.
     Traces(const Job& job, const std::filesystem::path& folder, Simulation& simulation,
            const std::vector<const Unit*>& units);
     ~Traces();
 
-    /// Throws what went wrong in writing, as AtomicFile does; the simulation was stopped by it.
+    /// Throws the error of writing, as AtomicFile does, that stopped the simulation.
     void check() const;
 
-    /// After the simulation has ended, however it did. Throws like check().
+    /// Call after the simulation has ended, for whatever reason. Throws like check().
     void finish();
 
-    /// For the summary: what was written, and of which cycles. One line each.
+    /// For the summary: the files written and their cycles, one line each.
     std::vector<std::string> text() const;
 
   private:
@@ -43,8 +43,8 @@ class Traces {
     TraceWindow window_;
 };
 
-/// Makes trace.fst of trace.vcd, which is in the set of files, and adds it. Returns what went wrong, in words for the
-/// user; empty: nothing.
+/// Converts trace.vcd, which is in the set of files, to trace.fst and adds it. Returns an error message for the user;
+/// empty on success.
 std::string make_fst(const std::filesystem::path& folder, AtomicSet& files);
 
 }  // namespace tessera

@@ -11,7 +11,7 @@ namespace tessera {
 namespace {
 
 constexpr std::size_t buffer_bytes = std::size_t{1} << 18;
-// A time stamp and a change, with what is copied beyond their ends.
+// A time stamp and a change, and the bytes copied beyond their ends.
 constexpr std::size_t longest_entry = 128;
 
 constexpr std::array<std::array<char, 8>, 256> make_bytes_in_binary() {
@@ -142,13 +142,13 @@ void VcdWriter::end_cycle(std::uint64_t cycle) {
         }
         changed_count_ = pulses_ = pulses;
         after_changes(cycle);
-        // From here on changes are ignored: every signal gets into changed_ once and stays.
+        // From here on changes are ignored: every signal is added to changed_ once and stays.
         past_window_ = all_written_ && cycle >= window_.last;
     }
     next_cycle_ = cycle + 1;
 }
 
-/// The last cycle's pulses fall, with no cycle's end to do it. Some may have been set again since, for later.
+/// Ends the last cycle's pulses, since no end_cycle() follows. Some may have been set again for a later cycle.
 void VcdWriter::end_pulses() {
     before_changes(next_cycle_);
     for (std::size_t i = 0; i < pulses_; ++i) {
@@ -207,7 +207,7 @@ void VcdWriter::write_value(const Wire& wire, std::uint64_t value) {
     if (wire.mask == 1) {
         *to++ = static_cast<char>('0' + value);
     } else {
-        // Leading zeros may be left out. Whole bytes are copied; what is too much is overwritten.
+        // Leading zeros may be omitted. Whole bytes are copied; the excess is overwritten.
         const int digits = value == 0 ? 1 : 64 - __builtin_clzll(value);
         *to++ = 'b';
         value <<= 64 - digits;

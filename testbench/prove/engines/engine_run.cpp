@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::uint64_t most_triangles = 20'000'000, most_cycles_without_progress = 1'000'000;
 
-/// Of the cycles in which items came into a unit, and left it.
+/// Digests of the cycles in which items entered and left a unit.
 class ItemTimes : public ActivityObserver, public schedule::ItemObserver {
   public:
     void stretch(State, const sc_core::sc_object*, std::uint64_t, std::uint64_t) override {}
@@ -36,7 +36,7 @@ class ItemTimes : public ActivityObserver, public schedule::ItemObserver {
     std::uint64_t came_ = 0, left_ = 0;
 };
 
-/// Of one machine's triangles, in their order; between machines it is not the same, and no result depends on it.
+/// Hash of one machine's triangles in their order; the order between machines differs, and no result depends on it.
 std::uint64_t digest_of(const EmittedMesh& mesh, std::size_t machine, std::size_t machines) {
     std::uint64_t digest = 0;
     for (const EmittedTriangle& triangle : mesh.triangles) {

@@ -11,9 +11,9 @@
 #include "testbench/prove/engines/scheduled_case.h"
 #include "testbench/prove/random_machines/random_case.h"
 
-// Runs random designs, seed by seed, with both engines of timed mode: the clocked one and the schedule. All figures, the
-// order of the mesh and every item's cycles must be equal.
-// Exit codes as tessera's: 0 all were, 1 some were not, 2 usage.
+// Runs random designs, seed by seed, with both engines of timed mode: the clocked one and the schedule. All figures,
+// the order of the mesh and every item's cycles must be equal. Exit codes as tessera's: 0 all equal, 1 differences, 2
+// usage.
 
 namespace {
 

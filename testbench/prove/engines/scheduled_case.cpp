@@ -6,7 +6,7 @@ namespace tessera {
 
 namespace {
 
-/// More than random cases do, whose runs are many more: here each figure may decide which of two things comes first.
+/// Varies more than the far more numerous random cases: here each figure may decide which of two events comes first.
 void choose_timing(Random& random, Timing& timing) {
     const bool slow = random.chance(30), deep = random.chance(30);
     const auto latency = [&] { return random.natural(1, slow ? 60 : 6); };

@@ -6,7 +6,7 @@
 
 namespace tessera {
 
-/// What is done to a transaction: stream_fault.h, memory_fault.h.
+/// Kinds of faults in a transaction: stream_fault.h, memory_fault.h.
 enum class FaultKind {
     bit_flip,
     dropped,
@@ -23,22 +23,22 @@ enum class FaultKind {
     response_reordered,
 };
 
-/// Kinds that need a transaction which is not taken at once.
+/// Kinds that need a transaction that is not accepted at once.
 constexpr bool strikes_held_back(FaultKind kind) {
     return kind == FaultKind::back_pressure_ignored || kind == FaultKind::request_before_end ||
            kind == FaultKind::response_early;
 }
 
-/// One transaction of a run, broken on purpose.
+/// One injected fault, in one transaction of a run.
 struct Fault {
     FaultKind kind = FaultKind::dropped;
     std::string place;  ///< an output or a memory port, without the machine's name: displace_vertex.to_transform
     std::uint64_t transaction =
-        1;                  ///< counted from 1 at the place; of some kinds (strikes_held_back) among those held back
+        1;                  ///< counted from 1 at the place; for some kinds among those held back (strikes_held_back)
     std::uint64_t bit = 0;  ///< with bit_flip of the payload, with address_flip of the address
 };
 
-/// A run's fault: says which transaction is the broken one, and remembers whether it came.
+/// A run's fault: selects the faulty transaction, and records whether it occurred.
 class FaultTrigger {
   public:
     explicit FaultTrigger(Fault fault) : fault_(std::move(fault)) {}
@@ -46,11 +46,11 @@ class FaultTrigger {
     const Fault& fault() const { return fault_; }
     FaultKind kind() const { return fault_.kind; }
 
-    /// A transaction comes by that the fault's kind can strike. True: this is the one.
+    /// Call for each transaction to which the fault's kind applies. Returns true for the faulty one.
     bool strikes() { return ++seen_ == fault_.transaction; }
     bool injected() const { return seen_ >= fault_.transaction; }
 
-    /// The broken transaction is kept until the next has gone, or has now been sent.
+    /// Sets whether the faulty transaction is being held until the next one has been sent.
     void wait_for_next(bool waits) { waits_for_next_ = waits; }
     bool waits_for_next() const { return waits_for_next_; }
 

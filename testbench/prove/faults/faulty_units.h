@@ -9,7 +9,7 @@
 
 namespace tessera {
 
-/// A machine with one fault, and with read checks.
+/// A machine with one injected fault, and with read checks.
 class FaultyUnits : public ReadCheckedUnits {
   public:
     FaultyUnits(Fault fault, const datapath::Formats& formats, int tag_bits);
@@ -19,7 +19,7 @@ class FaultyUnits : public ReadCheckedUnits {
     void join(MemoryPort& port, TableMemory& memory) override;
     void join(MemoryPort& port, OffChipMemory& memory) override;
 
-    /// The machine is built, and has the fault's place.
+    /// Whether the machine is built and has the fault's place.
     bool placed() const { return module_ != nullptr; }
     const FaultTrigger& trigger() const { return trigger_; }
 
@@ -32,7 +32,7 @@ class FaultyUnits : public ReadCheckedUnits {
     datapath::Formats formats_;
     int tag_bits_;
     FaultTrigger trigger_;
-    std::unique_ptr<sc_core::sc_module> module_;  // stands at the place
+    std::unique_ptr<sc_core::sc_module> module_;  // the module inserted at the place
 };
 
 }  // namespace tessera

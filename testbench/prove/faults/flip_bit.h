@@ -28,11 +28,11 @@ class BitFlipper {
     std::uint32_t annotation(const char*, std::uint32_t value) const { return value; }
 
   private:
-    std::uint64_t left_;  // until it is the field's own bit
+    std::uint64_t left_;  // bits left until the field's own bit
     bool flipped_ = false;
 };
 
-/// Bit 0 is the lowest of the item's first field (modules/sockets/README.md). False: the item has fewer bits.
+/// Bit 0 is the lowest of the item's first field (modules/sockets/README.md). Returns false if the item has fewer bits.
 template <class Item>
 bool flip_bit(Item& item, const datapath::Formats& formats, int tag_bits, std::uint64_t bit) {
     BitFlipper flipper(bit);

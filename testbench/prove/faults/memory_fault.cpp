@@ -107,7 +107,7 @@ tlm::tlm_sync_enum MemoryFault::answer(MemoryRequest& request, tlm::tlm_phase& p
         }
         return status;
     }
-    struck_ = nullptr;  // the port uses its payloads again
+    struck_ = nullptr;  // the port reuses its payloads
     switch (trigger_.kind()) {
         case FaultKind::response_lost: return tlm::TLM_COMPLETED;
         case FaultKind::response_reordered:

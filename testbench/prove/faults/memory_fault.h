@@ -10,20 +10,20 @@
 
 namespace tessera {
 
-/// Stands between a unit's memory port and the memory and breaks one transaction; passes all others on. Denies DMI, so
-/// that functional mode cannot go around it.
+/// Inserted between a unit's memory port and the memory. Corrupts one transaction and forwards all others. Denies DMI,
+/// so that functional mode cannot bypass it.
 ///
 ///   bit_flip             of the data: read, or about to be written
 ///   address_flip         a bit of the request's (first) address
 ///   dropped              END_REQ to the port, nothing to the memory
-///   doubled              the memory gets the request twice, the port two answers (timed mode)
+///   doubled              the memory gets the request twice, the port two responses (timed mode)
 ///   request_before_end   a second BEGIN_REQ while the memory withholds END_REQ
 ///   end_request_doubled  the port gets END_REQ twice
 ///   error_response       TLM_GENERIC_ERROR_RESPONSE
-///   response_lost        the answer does not come
-///   response_doubled     it comes twice
-///   response_early       it comes while END_REQ is withheld
-///   response_reordered   the next request's comes first; the last of a run has none
+///   response_lost        the response is dropped
+///   response_doubled     the response is sent twice
+///   response_early       the response is sent while END_REQ is withheld
+///   response_reordered   the next request's response is sent first; not for the last of a run
 class MemoryFault : public sc_core::sc_module {
   public:
     tlm_utils::passthrough_target_socket<MemoryFault, 32, MemoryProtocol> socket{"socket"};
@@ -43,8 +43,8 @@ class MemoryFault : public sc_core::sc_module {
     void flip_address(MemoryRequest& request);
 
     FaultTrigger& trigger_;
-    const MemoryRequest* struck_ = nullptr;  // its answer is still to be broken
-    MemoryRequest* held_ = nullptr;          // an answer that waits for the next
+    const MemoryRequest* struck_ = nullptr;  // its response is still to be corrupted
+    MemoryRequest* held_ = nullptr;          // a response that waits for the next one
 };
 
 }  // namespace tessera

@@ -12,13 +12,13 @@
 
 namespace tessera {
 
-/// Stands between a stream's output and its input and breaks one transaction; passes all others on as they are, payload
-/// and phases untouched, in both transports.
+/// Inserted between a stream's output and its input. Corrupts one transaction and forwards all others unchanged,
+/// payload and phases, in both transports.
 ///
 ///   bit_flip               the consumer gets a copy with a bit flipped
 ///   dropped                END_REQ to the producer, nothing to the consumer
-///   doubled                the consumer gets it twice, by the rules; the producer waits for both
-///   reordered              the next one goes first; the last of a run has none
+///   doubled                the consumer gets it twice, by the protocol; the producer waits for both
+///   reordered              the next one is sent first; not for the last of a run
 ///   back_pressure_ignored  as dropped, when the consumer has no room: it is overwritten
 ///   request_before_end     a second BEGIN_REQ while the consumer withholds END_REQ
 ///   end_request_doubled    the producer gets END_REQ twice
@@ -31,11 +31,11 @@ class StreamFault : public sc_core::sc_module,
     using Backward = tlm::tlm_bw_transport_if<Types>;
 
   public:
-    // Bound to this module itself: a producer finds it by its interface (module_behind), and is told its name.
+    // Bound to this module itself: a producer finds it by its interface (module_behind) and reports its name.
     tlm::tlm_target_socket<32, Types> in{"in"};
     tlm::tlm_initiator_socket<32, Types> out{"out"};
 
-    /// `trigger` must outlive it. consumer: whose lack of room is seen.
+    /// `trigger` must outlive it. consumer: the unit whose lack of room is observed.
     StreamFault(const sc_core::sc_module_name& name, FaultTrigger& trigger, const datapath::Formats& formats,
                 int tag_bits, const StreamInput<Payload>& consumer)
         : sc_module(name), trigger_(trigger), formats_(formats), tag_bits_(tag_bits), consumer_(consumer) {
@@ -44,7 +44,7 @@ class StreamFault : public sc_core::sc_module,
     }
 
   private:
-    /// What the consumer is to get in this transaction's place.
+    /// Sends `payload` to the consumer in place of this transaction.
     void replace(const Payload& payload) {
         if (held_) {
             copies_ = {payload, *held_};
@@ -124,7 +124,7 @@ class StreamFault : public sc_core::sc_module,
         in->nb_transport_bw(payload, phase, delay);
     }
 
-    /// False: the consumer withholds END_REQ of the first.
+    /// Returns false if the consumer withholds END_REQ of the first.
     bool send_copies() {
         for (; !copies_.empty(); copies_.pop_front()) {
             tlm::tlm_phase phase = tlm::BEGIN_REQ;
@@ -159,10 +159,10 @@ class StreamFault : public sc_core::sc_module,
     datapath::Formats formats_;
     int tag_bits_;
     const StreamInput<Payload>& consumer_;
-    std::deque<Payload> copies_;  // what the consumer has yet to take instead of the producer's
-    Payload* offered_ = nullptr;  // the producer's, which waits for them
+    std::deque<Payload> copies_;  // still to be sent to the consumer instead of the producer's payload
+    Payload* offered_ = nullptr;  // the producer's payload, which waits for them
     Payload* ends_twice_ = nullptr;
-    std::optional<Payload> held_;  // until the next has gone
+    std::optional<Payload> held_;  // held until the next has been sent
 };
 
 }  // namespace tessera

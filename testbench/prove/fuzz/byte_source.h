@@ -5,7 +5,7 @@
 
 namespace tessera::fuzz {
 
-/// Numbers from a fuzzer's bytes, in order; zero bytes follow their end. The same bytes give the same numbers on every
+/// Numbers from a fuzzer's bytes, in order; zeros follow the last byte. The same bytes give the same numbers on every
 /// platform.
 class ByteSource {
   public:

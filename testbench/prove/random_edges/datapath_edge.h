@@ -17,7 +17,7 @@
 #include "modules/datapath/triangle_pass.h"
 #include "testbench/prove/random_edges/edge_machine.h"
 
-/// The recursion with the datapath's functions only.
+/// The recursion, using only the datapath's functions.
 namespace tessera::testing {
 
 using tessera::Machine;

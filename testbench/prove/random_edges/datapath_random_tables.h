@@ -7,7 +7,7 @@
 
 namespace tessera::testing {
 
-/// A unit vector that points up, from three random numbers.
+/// A unit vector pointing up, from three random numbers.
 inline datapath::Direction random_normal(Random& random, const datapath::Formats& formats) {
     datapath::Saturations unused;
     const datapath::Direction any{random.integer32(-999, 999), random.integer32(-999, 999), random.integer32(1, 999)};

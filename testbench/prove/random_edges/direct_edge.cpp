@@ -79,7 +79,7 @@ DirectEdge::Texel DirectEdge::texel(const datapath::TexCoord& t) const {
     return {t.u / unit, t.v / unit};
 }
 
-/// Between texels: a weighted sum of four, in quarters of the square of t's unit.
+/// Between texels: a weighted sum of four values; the weights are multiples of a quarter of the square of t's unit.
 template <class Value>
 std::int64_t DirectEdge::read(const datapath::TexCoord& t, int fraction, Value value) const {
     const datapath::Formats& formats = registers_.formats;

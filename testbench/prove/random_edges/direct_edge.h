@@ -61,7 +61,7 @@ class DirectEdge {
         std::uint32_t x, y;
     };
     Texel texel(const datapath::TexCoord& t) const;
-    /// A value of the map at t, as the design reads it, with `fraction` fraction bits if that is between texels.
+    /// A value of the map at t, sampled as in the design, with `fraction` fraction bits if it is interpolated.
     template <class Value>
     std::int64_t read(const datapath::TexCoord& t, int fraction, Value value) const;
     std::uint32_t first_texel(std::uint32_t coordinate, std::uint32_t extent, std::uint32_t size,

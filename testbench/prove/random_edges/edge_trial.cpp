@@ -128,7 +128,7 @@ void Trial::try_edge(Machine& machine, const DirectEdge& direct, const Vertex& i
         try_moved(machine, one, inserted_);
 }
 
-/// The same edge shifted by whole periods, from its other end: the other copy of a closed surface's seam.
+/// Tries the same edge shifted by whole periods, from its other end: the other copy of a closed surface's seam.
 void Trial::try_moved(Machine& machine, const TrianglePass& here, const Vertex& inserted) {
     const datapath::MapGeometry& map = machine.registers.map;
     const datapath::Formats& formats = machine.registers.formats;

@@ -15,7 +15,7 @@ struct EdgeTrial {
     std::uint64_t machines = 0;               ///< sets of formats, map, registers
     std::uint64_t moved = 0;                  ///< edges tried again, shifted by whole periods
     std::array<std::uint64_t, 6> yes{};       ///< by test, in the order of TestBits
-    std::array<std::uint64_t, 4> at_limit{};  ///< measure equal to its threshold: NT, SHT, VT, HT
+    std::array<std::uint64_t, 4> at_limit{};  ///< the value equals its threshold: NT, SHT, VT, HT
     std::uint64_t splits = 0;
     std::uint64_t behind = 0;           ///< edges with an end on or behind the near plane
     std::uint64_t degenerate = 0;       ///< inserted vertices whose normal has no direction

@@ -9,7 +9,7 @@
 
 namespace tessera {
 
-/// A result as bytes: the figures as they lie in memory, then the failure's text.
+/// A result as bytes: the figures' memory image, then the failure's text.
 static_assert(std::is_trivially_copyable_v<CaseFigures>);
 
 CaseResult run_case_in_process(const RandomCase& random_case, Mode mode) {

@@ -3,8 +3,8 @@
 
 namespace tessera {
 
-/// run_case in a process of its own. Whatever ends that process but its end is a failure, too: an exception, a signal,
-/// more than two minutes.
+/// Runs run_case in a child process. Any abnormal end of that process is a failure, too: an exception, a signal, more
+/// than two minutes.
 CaseResult run_case_in_process(const RandomCase& random_case, Mode mode);
 
 }  // namespace tessera

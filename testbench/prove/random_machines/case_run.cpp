@@ -14,7 +14,7 @@ namespace tessera {
 
 namespace {
 
-/// The sum over the triangles: the same in any order.
+/// Sum of hashes over the triangles: independent of their order.
 std::uint64_t digest_of(const EmittedMesh& mesh) {
     std::uint64_t sum = 0;
     for (const EmittedTriangle& triangle : mesh.triangles) {

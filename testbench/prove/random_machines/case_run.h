@@ -6,7 +6,7 @@
 
 namespace tessera {
 
-/// What one run of one case came to.
+/// The figures of one run of one case.
 struct CaseFigures {
     std::uint64_t runs = 0;
     std::uint64_t base_triangles = 0;
@@ -15,14 +15,14 @@ struct CaseFigures {
     std::uint64_t cracks = 0;
     std::uint64_t t_vertices = 0;
     std::uint64_t other_violations = 0;  ///< of the invariants
-    std::uint64_t collapsed = 0;         ///< rounding's doing, or the input's
+    std::uint64_t collapsed = 0;         ///< caused by rounding or by the input
     std::uint64_t turned_over = 0;       ///< likewise
     std::uint64_t open_input_edges = 0;  ///< at texture seams and creases of the input
     std::uint64_t flips = 0;             ///< edges, allowed: golden within the formats' bound of its threshold
-    std::uint64_t mismatches = 0;        ///< with the golden model
-    std::uint64_t spilled = 0;           ///< triangles that went off chip
+    std::uint64_t mismatches = 0;        ///< against the golden model
+    std::uint64_t spilled = 0;           ///< triangles sent off chip
     std::uint64_t cycles = 0;
-    /// Of one run's emitted triangles, all there is of each, in any order; not added up.
+    /// Digest of all fields of one run's emitted triangles, independent of order; not added up.
     std::uint64_t mesh_digest = 0;
 
     void add(const CaseFigures& other);
@@ -30,7 +30,7 @@ struct CaseFigures {
 
 struct CaseResult {
     CaseFigures figures;
-    /// Empty: invariants and conformance hold, and the run ended.
+    /// Empty: invariants and conformance hold, and the run ended normally.
     std::string failure;
 };
 

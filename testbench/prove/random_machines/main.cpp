@@ -13,9 +13,9 @@
 #include "testbench/common/grouped_digits.h"
 #include "testbench/prove/random_machines/case_process.h"
 
-// Runs random cases, seed by seed, in both modes, each run in a process of its own. Every run must end, satisfy the
-// invariants and conform to the golden model; both modes must leave the same mesh.
-// Exit codes as tessera's: 0 all did, 1 some did not, 2 usage.
+// Runs random cases, seed by seed, in both modes, each run in a child process. Every run must end, satisfy the
+// invariants and conform to the golden model; both modes must give the same mesh. Exit codes as tessera's: 0 all
+// passed, 1 failures, 2 usage.
 
 namespace {
 
@@ -44,7 +44,7 @@ void print_totals(std::uint64_t first, std::uint64_t count, std::uint64_t failed
                number(failed));
 }
 
-/// The case as files and what was wrong with it.
+/// Writes the case as files, and its failure.
 void leave_failure(const RandomCase& random_case, Mode mode, const std::string& failure, const Order& order) {
     const std::filesystem::path folder =
         std::filesystem::path(order.failures) / fmt::format("seed_{}", random_case.seed);

@@ -56,7 +56,7 @@ RandomCase draw(Random& random) {
     return made;
 }
 
-/// One notch fewer triangles, in one of several ways.
+/// Changes the tests so that the mesh has somewhat fewer triangles.
 void coarsen(Random& random, Job::Tests& tests) {
     if (!tests.generation) {
         tests.generation = true;
@@ -77,7 +77,7 @@ void coarsen(Random& random, Job::Tests& tests) {
         std::min(area ? 2.0 : 4096.0, 2 * tests.summed_height_threshold + (area ? 0.001 : 0.05));
 }
 
-/// One notch more.
+/// Changes the tests so that the mesh has somewhat more triangles.
 void refine(Random& random, const Job::Formats& formats, Job::Tests& tests) {
     tests.normal_threshold /= 4;
     tests.summed_height_threshold /= 4;
@@ -101,7 +101,7 @@ std::uint64_t edges_of(const RandomCase& random_case) {
     return BareRecursion(setup).run(mesh, RandomCase::most_edges);
 }
 
-/// By the datapath alone, which says how many edges the mesh takes.
+/// Adjusts the case with the bare datapath, which gives the number of edges that the mesh takes.
 void settle(Random& random, RandomCase& random_case) {
     Job::Tests& tests = random_case.job.tests;
     constexpr int most_notches = 6;
@@ -158,13 +158,13 @@ RandomCase make_random_case(std::uint64_t seed) {
             made.seed = seed;
             validate(made.job);
             settle(random, made);
-            // Without a Generation Test a generation may be wider than the wires of a spilled triangle: an error.
+            // Without a Generation Test a generation may not fit the fields of a spilled triangle, which is an error.
             if (!made.job.tests.generation)
                 made.job.hardware.queue_capacity = 0;
             choose_evaluations(random, made.job);
             return made;
         } catch (const InputError&) {
-            // The host refuses it, as it should: another draw.
+            // Refused by the host, as it should be: draw again.
         }
     }
     throw std::logic_error(fmt::format("seed {}: the host refused {} draws in a row", seed, most_draws));

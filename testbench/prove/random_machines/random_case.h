@@ -12,26 +12,26 @@
 
 namespace tessera {
 
-/// A whole input of the machine that follows from its seed and nothing else: mesh, map and job, as files hold them.
+/// A complete input of the machine, determined by its seed alone: mesh, map and job, as in files.
 struct RandomCase {
-    /// Edges that the mesh may take, evaluated: thresholds and the generation limit are raised and lowered until it
-    /// does, and, of four cases in five, as far as that helps, until it takes `wanted_edges`.
+    /// Limit on the edges evaluated for the mesh: thresholds and the generation limit are raised and lowered until it
+    /// is met and, in four of five cases, as far as that helps, until the mesh takes `wanted_edges`.
     static constexpr std::uint64_t most_edges = 40000;
     static constexpr std::uint64_t wanted_edges = 4000;
 
     std::uint64_t seed = 0;
-    Job job;  ///< mesh.file and map.file are the names write() gives them
+    Job job;  ///< mesh.file and map.file are the names used by write()
     RandomMesh mesh;
     RandomMap map;
 
-    /// One line: what kind of mesh, map and design.
+    /// One line that describes mesh, map and design.
     std::string summary() const;
 
     BaseMesh base_mesh() const;
     HeightMap height_map() const { return map.height_map(); }
     MachineSetup setup() const;
 
-    /// Writes job.toml, mesh.obj and map.pgm: `tessera run FOLDER/job.toml` runs the same case. Makes the folder.
+    /// Writes job.toml, mesh.obj and map.pgm: `tessera run FOLDER/job.toml` runs the same case. Creates the folder.
     void write(const std::filesystem::path& folder, Mode mode) const;
 };
 

@@ -75,7 +75,7 @@ void choose_hardware(Random& random, Job::Hardware& hardware) {
     hardware.queue_order = random.coin() ? QueueOrder::fifo : QueueOrder::lifo;
     hardware.queue_watermark = random.one_of<std::int64_t>({1, 1, 3, 20, 1000});
     hardware.queue_capacity = random.one_of<std::int64_t>({0, 0, 1, 2, 7, 64, 500});
-    hardware.queue_overflow = Overflow::spill;  // with the others a run of any queue need not end well
+    hardware.queue_overflow = Overflow::spill;  // with other settings, a run with an arbitrary queue may fail
     hardware.off_chip_triangles = 100000;
     hardware.tests_units = random.coin() ? 1 : 3;
     hardware.transform_pipelines = random.one_of<std::int64_t>({1, 1, 2, 5});
@@ -115,7 +115,7 @@ void make_random_job(Random& random, const JobContext& context, Job& job) {
     choose_timing(random, job.timing);
     job.displacement.scale = context.size * random.one_of({0.0, 0.02, 0.1, 0.1, 0.3, 1.0, -0.1, -0.5, 3.0, 0.0001});
     job.displacement.bias = context.size * random.one_of({0.0, 0.0, 0.1, -0.05, 1.0});
-    job.check.end_to_end = false;   // narrow formats lead to another mesh of the same surface
+    job.check.end_to_end = false;   // narrow formats give another mesh of the same surface
     job.check.allowed_flips = 100;  // narrow formats flip often; each flip is judged by its bound
     job.limits.cycles_without_progress = 200000;
 }

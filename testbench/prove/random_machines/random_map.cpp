@@ -21,7 +21,7 @@ int any_side(Random& random) {
     }
 }
 
-/// The sample at column, row as a function: one of the patterns, with its parameters drawn.
+/// One of the patterns with random parameters, as a function of column and row.
 std::function<std::int64_t(int, int)> any_pattern(Random& random, const RandomMap& map) {
     const std::int64_t highest = map.highest;
     const auto any_sample = [&random, highest] { return random.integer(0, highest); };
@@ -56,7 +56,7 @@ std::function<std::int64_t(int, int)> any_pattern(Random& random, const RandomMa
                 return highest * std::abs(phase - length) / length;
             };
         }
-        case 6: {  // checks of one texel
+        case 6: {  // single-texel checkerboard
             const std::int64_t low = any_sample(), high = any_sample();
             return [=](int x, int y) { return (x + y) % 2 == 0 ? low : high; };
         }

@@ -8,21 +8,21 @@
 
 namespace tessera {
 
-/// A displacement map of integer samples, as a PGM file holds them; row 0 is the top one.
+/// A displacement map of integer samples, as in a PGM file; row 0 is the top one.
 struct RandomMap {
     int width = 1;
     int height = 1;
     int highest = 65535;  ///< PGM's maximum value
     std::vector<std::uint16_t> samples;
 
-    /// What reading pgm() gives.
+    /// The result of reading pgm().
     HeightMap height_map() const;
     /// The map as a file: binary PGM.
     std::string pgm() const;
 };
 
-/// Up to 96 texels a side: 1 x 1, 1 x N, N x 1, odd, powers of two; noise, steps, extremes (0 and 65535 only), spikes,
-/// ramps, waves, constants.
+/// Up to 96 texels per side: 1 x 1, 1 x N, N x 1, odd, powers of two; noise, steps, extremes (0 and 65535 only),
+/// spikes, ramps, waves, constants.
 RandomMap make_random_map(Random& random);
 
 }  // namespace tessera

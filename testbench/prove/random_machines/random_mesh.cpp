@@ -17,7 +17,7 @@ namespace {
 
 using glm::dvec2, glm::dvec3;
 
-/// On the unit circle, a part of it round: rational, quarter by quarter.
+/// A point on the unit circle, `part` of the way round: rational, quarter by quarter.
 dvec2 on_circle(double part) {
     const double quarters = (part - std::floor(part)) * 4;
     const double whole = std::floor(quarters), t = quarters - whole;
@@ -83,7 +83,7 @@ class MeshMaker {
     std::vector<Face> faces_;
 };
 
-/// 0..1 in `count` steps, alike or of widths up to 64 to 1.
+/// 0..1 in `count` steps, equal or with widths up to 64 to 1.
 std::vector<double> MeshMaker::steps(int count) {
     const bool mixed = random_.chance(40);
     std::vector<double> at{0};
@@ -95,7 +95,7 @@ std::vector<double> MeshMaker::steps(int count) {
     return at;
 }
 
-/// shape(u, v) over 0..1; a closed direction shares its first and last positions, not their texture coordinates.
+/// shape(u, v) over 0..1; a closed direction shares its first and last positions, but not their texture coordinates.
 template <class Shape>
 void MeshMaker::grid(int columns, int rows, bool closed_u, bool closed_v, Shape&& shape) {
     const std::vector<double> u = steps(columns), v = steps(rows);
@@ -193,7 +193,7 @@ void MeshMaker::fan() {
         face({centre, radial ? texture({(around[k] + around[k + 1]) / 2, 1}) : middle, 0}, rim[k], rim[k + 1]);
 }
 
-/// A strip of long thin triangles, in space and, if so drawn, in the map as well.
+/// A strip of long thin triangles in space and, at random, in the map as well.
 void MeshMaker::slivers() {
     const int count = random_.integer32(1, 24);
     const double width = random_.one_of({1.0, 0.1, 0.01, 0.0001});
@@ -244,12 +244,12 @@ void MeshMaker::soup() {
     }
     // One that is a triangle whatever was drawn.
     const std::size_t p = position({2, 0, 0}), q = position({2, 1, 0}), r = position({2, 0, 1});
-    // One after another: in which order a call's arguments are evaluated is the compiler's choice.
+    // In separate statements: the evaluation order of a call's arguments is unspecified.
     const std::size_t tp = texture({0, 0}), tq = texture({1, 0}), tr = texture({0, 1});
     face({p, tp, 0}, {q, tq, 0}, {r, tr, 0});
 }
 
-/// Two triangles whose texture is mirrored across their common edge: of either handedness.
+/// Two triangles whose texture is mirrored across their common edge: one of each handedness.
 void MeshMaker::mirrored_pair() {
     const Corner a{position({0, 0, 0}), texture({0.3, 0}), 0}, b{position({0, 1, 0}), texture({0.3, 1}), 0};
     const Corner c{position({1, 0.5, 0}), texture({0.9, 0.5}), 0};
@@ -307,7 +307,7 @@ void MeshMaker::dress(const RandomMap& map) {
     place();
 }
 
-/// Faces' normals of their own give creases, tilted ones are not at right angles to anything.
+/// Face normals give creases; tilted ones are perpendicular to nothing.
 void MeshMaker::set_normals() {
     const std::int64_t choice = random_.integer(0, 5);
     if (choice > 1)
@@ -334,7 +334,7 @@ void MeshMaker::set_textures(const RandomMap& map) {
     const auto offset = [&] { return random_.chance(60) ? 0.0 : random_.one_of({0.5, 1.0, -1.25, 0.37}); };
     const dvec2 times{scale(), scale()}, plus{offset(), offset()};  // braces: drawn in this order
     const dvec2 size(map.width, map.height);
-    const double snapped = random_.chance(40) ? random_.one_of({1.0, 2.0, 8.0}) : 0;  // steps a texel
+    const double snapped = random_.chance(40) ? random_.one_of({1.0, 2.0, 8.0}) : 0;  // steps per texel
     const bool turned = random_.chance(20);
     for (dvec2& t : textures_) {
         t = (turned ? dvec2(t.y, t.x) : t) * times + plus;

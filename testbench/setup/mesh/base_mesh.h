@@ -17,7 +17,7 @@ struct BaseVertex {
     glm::dvec2 texture{0};  ///< u, v as in the file: 0..1 spans the map once; v = 0 is the bottom row
 };
 
-/// The lowest and the highest coordinates of at least one vertex.
+/// The lowest and the highest coordinates; needs at least one vertex.
 inline std::array<glm::dvec3, 2> bounds_of(const std::vector<BaseVertex>& vertices) {
     glm::dvec3 low(vertices.front().position), high(low);
     for (const BaseVertex& vertex : vertices) {
@@ -38,7 +38,7 @@ struct BaseMesh {
         double smallest_u = 1, largest_u = 1, smallest_v = 1, largest_v = 1;
     } texture_scale;
 
-    /// Texture coordinates beyond a clamped map stay, where others are set to its border: a lattice reaches beyond it.
+    /// Texture coordinates beyond a clamped map are kept instead of clamped, for a lattice that extends beyond the map.
     bool beyond_map = false;
 
     std::optional<glm::dvec3> up;  ///< the model's up, any length, if the source defines it

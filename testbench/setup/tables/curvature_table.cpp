@@ -17,12 +17,12 @@ struct SquareSums {
     std::int64_t h = 0, hh = 0, xh = 0, yh = 0, xxh = 0, yyh = 0, xyh = 0;
 };
 
-/// A quadratic by its midpoint's deviations from chords from border to border, and what it leaves, codes.
+/// A quadratic, given by its midpoint deviations from border-to-border chords, and its residual, in codes.
 struct Bend {
     double xx = 0, xy = 0, yy = 0, rest = 0;
 };
 
-/// The squares of one level, of 2 * reach + 1 texels a side.
+/// The squares of one level, with 2 * reach + 1 texels per side.
 class Squares {
   public:
     Squares(const QuantisedMap& map, std::int64_t reach)
@@ -104,7 +104,7 @@ class Squares {
     double spread_ = 0;   // sum of (x^2 - mean)^2 over the square
 };
 
-/// With the least exponent at which all four fit, rounded to nearest.
+/// Uses the least exponent at which all four values fit; rounds to nearest.
 datapath::CurvatureEntry rounded(const Bend& bend) {
     datapath::CurvatureEntry entry;
     const auto in_units = [&](double codes) {

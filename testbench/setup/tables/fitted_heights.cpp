@@ -7,7 +7,7 @@ namespace tessera {
 
 namespace {
 
-/// The code at a grid point and how the mesh's height there depends on the codes under its triangle's corners.
+/// The code at a grid point, and the dependence of the mesh's height there on the codes under its triangle's corners.
 struct Observation {
     std::array<std::size_t, 3> texel{};
     std::array<double, 3> weight{};
@@ -21,8 +21,8 @@ std::size_t texel_under(const QuantisedMap& map, const datapath::TexCoord& t, co
            datapath::texel_index(datapath::integer_part(t.u, formats), g.width, g.address_u);
 }
 
-/// One for each grid point that the mesh covers; of base triangles on the same texels, for each of them. Triangles that
-/// share a point on their edges agree on its height.
+/// One for each grid point that the mesh covers; for base triangles on the same texels, one for each of them. Triangles
+/// that share a point on their edges agree on its height.
 std::vector<Observation> observe(const QuantisedMap& map, const std::vector<TextureTriangle>& mesh,
                                  const datapath::Formats& formats) {
     std::vector<Observation> observations;
@@ -48,7 +48,7 @@ std::vector<Observation> observe(const QuantisedMap& map, const std::vector<Text
     return observations;
 }
 
-using Values = std::vector<double>;  // one a texel; 0 where no vertex lies
+using Values = std::vector<double>;  // one per texel; 0 where there is no vertex
 
 double dot(const Values& a, const Values& b) {
     double sum = 0;
@@ -62,7 +62,7 @@ void add(Values& to, double factor, const Values& values) {
         to[k] += factor * values[k];
 }
 
-/// Least squares by conjugate gradients, preconditioned by the diagonal, from the map's own codes on.
+/// Least squares by conjugate gradients, preconditioned by the diagonal, starting from the map's own codes.
 class HeightFit {
   public:
     HeightFit(std::vector<Observation> observations, std::size_t texels)

@@ -6,9 +6,9 @@
 
 namespace tessera {
 
-/// The map with other codes under the vertices of a mesh: those with which the mesh's squared vertical error at all
-/// grid points of the map is least, rounded to codes. For one fixed mesh. Tables of the Rank, Bound and Curvature Tests
-/// made of the original map do not change with it; the Curvature Test's level 1, which reads codes, does.
+/// The map with other codes under the vertices of a mesh: those that minimise the mesh's squared vertical error over
+/// all grid points of the map, rounded to codes. Valid for one fixed mesh. Tables of the Rank, Bound and Curvature
+/// Tests made from the original map do not change; the Curvature Test's level 1, which reads codes, does.
 ///
 /// mesh: texture coordinates of the finished triangles. Vertices in the same texel share its code.
 QuantisedMap fit_heights(const QuantisedMap& map, const std::vector<TextureTriangle>& mesh,

@@ -10,7 +10,7 @@
 
 namespace tessera {
 
-/// The corners of a triangle over a map: texture coordinates, on a repeated axis any number of periods away.
+/// The corners of a triangle over a map: texture coordinates, on a repeated axis possibly periods away.
 using TextureTriangle = std::array<datapath::TexCoord, 3>;
 
 /// A texel centre that a triangle covers. part[k] / whole is its barycentric coordinate of corner k, exactly.
@@ -21,7 +21,7 @@ struct GridPoint {
     bool is_on_an_edge() const { return part[0] == 0 || part[1] == 0 || part[2] == 0; }
 };
 
-/// The grid points of the map (texel centres) that a triangle covers, its borders included. Exact.
+/// The grid points of the map (texel centres) covered by a triangle, borders included. Exact.
 class GridPoints {
   public:
     GridPoints(const TextureTriangle& triangle, const datapath::MapGeometry& map, const datapath::Formats& formats)
@@ -39,7 +39,7 @@ class GridPoints {
         }
     }
 
-    /// Twice the triangle's area, in squares of half an LSB of t; 0 if it has none, and then no points.
+    /// Twice the triangle's area, in squares of half an LSB of t; 0 if it has no area, and then there are no points.
     std::int64_t whole() const { return whole_; }
 
     template <class Visit>
@@ -94,7 +94,7 @@ class GridPoints {
     }
 
     datapath::MapGeometry map_;
-    std::int64_t half_;  // a texel is 2 half_ wide, in halves of an LSB
+    std::int64_t half_;  // a texel is 2 half_ wide, in half LSBs
     std::int64_t whole_ = 0;
     std::array<std::int64_t, 3> x_{}, y_{}, along_u_{}, along_v_{};
 };

@@ -30,7 +30,7 @@ std::vector<Block> blocks_of(const QuantisedMap& map) {
     return blocks;
 }
 
-/// Four blocks to one.
+/// Joins four blocks into one.
 std::vector<Block> joined(const std::vector<Block>& from, const datapath::MipmapBlocks& of,
                           const datapath::MipmapBlocks& to) {
     std::vector<Block> blocks(std::size_t{to.columns} * to.rows);

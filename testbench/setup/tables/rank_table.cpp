@@ -21,18 +21,18 @@ using datapath::FormatLimits;
 using datapath::TexCoord;
 
 // log2 of codes^2 from -16, so that ranks have room to grow along dependencies where the map is flat, to 48: a triangle
-// of 2^23 texels, each of them 2^12 codes off, has 47.
+// of 2^23 texels, each with an error of 2^12 codes, has 47.
 LogScale rank_scale(int bits) {
     return {bits, 6, 16};
 }
 
-// log2 of codes from -8 to 24, of which 16 is needed: the rest is room to grow.
+// log2 of codes from -8 to 24; 16 is needed, the rest is room to grow.
 LogScale bound_scale(int bits) {
     return {bits, 5, 8};
 }
 
-/// Falls of squared error, per triangle, shared among splits so that none is worth more than one it needs: a split that
-/// brings little but leads to others that bring much forms a block with them. Optimal if each split needed only the
+/// Falls of squared error per triangle, pooled among splits so that none is worth more than one it needs: a split of
+/// little value that leads to others of much value forms a block with them. Optimal if each split needed only the
 /// youngest of its makers; a vertex of the forest these form is merged with its best successor as long as that is
 /// better.
 class PooledFalls {
@@ -53,7 +53,7 @@ class PooledFalls {
             if (maker[k] != nothing)
                 blocks_[maker[k]].successors.push({blocks_[k].per_triangle(), static_cast<std::uint32_t>(k)});
         }
-        for (Block& block : blocks_)  // a block joins an older one, whose own is known by then
+        for (Block& block : blocks_)  // a block joins an older one, whose own is already known
             block.joined = blocks_[block.joined].joined;
     }
 
@@ -64,7 +64,7 @@ class PooledFalls {
     using Successor = std::pair<double, std::uint32_t>;  // fall per triangle, block
     struct Block {
         double fall = 0, triangles = 0;
-        std::uint32_t joined = 0;  // the block it is part of
+        std::uint32_t joined = 0;  // the block that it is part of
         std::priority_queue<Successor> successors;
         double per_triangle() const { return fall / triangles; }
     };
@@ -87,19 +87,19 @@ class PooledFalls {
     std::vector<Block> blocks_;
 };
 
-/// Entries of one table: those wanted, raised so that each split's is greater than those of the splits that need it.
+/// Entries of one table: the wanted ones, raised so that each split's entry exceeds those of the splits that need it.
 class EntryTable {
   public:
     EntryTable(const SplitHierarchy& hierarchy, std::uint32_t columns, std::uint32_t rows)
         : hierarchy_(hierarchy), columns_(columns), entries_(std::size_t{columns} * rows, 0) {}
 
-    /// wanted: an entry a split. Returns the highest threshold below which no split lacks the entry it wants.
+    /// wanted: one entry per split. Returns the highest threshold below which every split has the entry it wants.
     std::uint32_t fill(const std::vector<std::uint32_t>& wanted, std::uint32_t highest) {
         for (std::size_t k = 0; k < wanted.size(); ++k) {
             std::uint32_t& entry = entries_[texel(k)];
             entry = std::max(entry, wanted[k]);
         }
-        // Once suffices without clashes; with them makers may depend on one another.
+        // One round suffices without clashes; with clashes, makers may depend on one another.
         for (int round = 0; round < most_rounds && raise_makers(); ++round) {
         }
         return lower_to(highest, wanted);
@@ -127,8 +127,8 @@ class EntryTable {
         return raised;
     }
 
-    /// Below the highest entry each split leaves room for the longest chain of those it needs, so that entries which do
-    /// not fit stay in order.
+    /// Below the highest entry, each split leaves room for the longest chain of splits that it needs, so that entries
+    /// which do not fit stay in order.
     std::uint32_t lower_to(std::uint32_t highest, const std::vector<std::uint32_t>& wanted) {
         std::vector<std::uint32_t> room(wanted.size(), highest);
         for (const SplitDependency& dependency : hierarchy_.dependencies) {
@@ -169,7 +169,7 @@ std::vector<std::uint32_t> wanted_bounds(const SplitHierarchy& hierarchy, const 
     return wanted;
 }
 
-/// The least code of a radius that is no smaller; the greatest if there is none.
+/// The least code whose radius is at least `radius`; the greatest if there is none.
 std::uint8_t radius_above(double radius) {
     constexpr std::uint32_t greatest = (1u << datapath::radius_bits) - 1;
     const auto least = static_cast<std::uint64_t>(std::ceil(std::min(radius, 0x1p62)));
@@ -179,7 +179,7 @@ std::uint8_t radius_above(double radius) {
     return static_cast<std::uint8_t>(code);
 }
 
-/// Each split's radius covers its own triangles, and those of the splits that need it from where their ends are.
+/// Each split's radius covers its own triangles, and those of the splits that need it, from the ends of its own edge.
 std::vector<std::uint8_t> nested_radii(const SplitHierarchy& hierarchy, double rounding, std::uint32_t columns,
                                        std::uint32_t rows) {
     std::vector<double> radii(hierarchy.splits.size());
@@ -202,7 +202,7 @@ std::vector<std::uint8_t> nested_radii(const SplitHierarchy& hierarchy, double r
     return table;
 }
 
-/// A threshold in octaves, with so many fraction bits, rounded down into a register's range.
+/// A threshold in octaves as fixed point with `fraction` bits, rounded down and clamped to a register's range.
 std::int32_t seen_threshold(double octaves, int fraction, int bits) {
     const double most = std::ldexp(1.0, bits - 1), fixed = std::floor(std::ldexp(octaves, fraction));
     return static_cast<std::int32_t>(fixed > -most ? std::min(fixed, most - 1) : -most);  // no number: nothing to see

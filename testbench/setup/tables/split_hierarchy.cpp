@@ -38,7 +38,7 @@ std::array<std::int64_t, 2> step(const TexCoord& from, const TexCoord& to) {
     return {std::int64_t{to.u} - from.u, std::int64_t{to.v} - from.v};
 }
 
-/// A name of a triangle that its corners' order and whole periods do not change.
+/// A name of a triangle that is independent of its corners' order and of whole periods.
 std::array<std::array<std::int64_t, 2>, 3> name_of(const TextureTriangle& triangle, const Period& period) {
     std::array<std::array<std::array<std::int64_t, 2>, 3>, 3> names;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -66,15 +66,15 @@ struct MeshTriangle {
     std::array<std::uint32_t, 3> edge{};
     std::array<std::uint32_t, 3> next_side{};
     std::array<bool, 3> reversed{};  ///< the edge runs from corner k + 1 to corner k
-    std::uint32_t maker = nothing;   ///< the split it came of
-    std::array<End, 2> made_of{};    ///< of the edge that was bisected then
+    std::uint32_t maker = nothing;   ///< the split that created it
+    std::array<End, 2> made_of{};    ///< of the edge bisected by that split
     double longest = 0;              ///< square of its longest edge, in LSB of t
     TriangleFit fit;
 };
 
 struct MeshEdge {
     std::uint32_t first_side = nothing;
-    double merit = -1;  ///< negative: not to be bisected
+    double merit = -1;  ///< negative: not a candidate
 };
 
 struct Candidate {
@@ -106,7 +106,7 @@ class Refinement {
         while (!candidates_.empty()) {
             const Candidate next = candidates_.top();
             candidates_.pop();
-            if (edges_[next.edge].merit == next.merit)  // else it has been bisected, or rated anew
+            if (edges_[next.edge].merit == next.merit)  // otherwise it has been bisected or rated again
                 bisect(next.edge);
         }
         for (const MeshTriangle& triangle : triangles_)
@@ -169,7 +169,7 @@ class Refinement {
     }
     std::uint32_t& next_side(std::uint32_t side) { return triangles_[side / 3].next_side[side % 3]; }
 
-    /// What bisecting an edge is worth; as a candidate if it is worth anything.
+    /// Rates the bisection of an edge, and makes it a candidate if it is worthwhile.
     void rate(std::uint32_t edge) {
         const std::uint32_t first = edges_[edge].first_side;
         const MeshTriangle& one = triangles_[first / 3];
@@ -214,8 +214,8 @@ class Refinement {
             rate(other);
     }
 
-    /// The children keep their places among the corners, as in the hardware: one has the midpoint for corner k + 1, the
-    /// other, which is new in the list, for corner k.
+    /// The children keep their positions among the corners, as in the hardware: one has the midpoint as corner k + 1,
+    /// the other, which is new in the list, as corner k.
     void bisect_triangle(std::uint32_t side, std::uint32_t number, std::uint32_t halves, EdgeSplit& split) {
         const std::uint32_t first = side / 3, second = static_cast<std::uint32_t>(triangles_.size());
         const std::size_t k = side % 3, k1 = (k + 1) % 3, k2 = (k + 2) % 3;
@@ -257,7 +257,7 @@ class Refinement {
         return std::min(distance(a[0], b[0]) + distance(a[1], b[1]), distance(a[0], b[1]) + distance(a[1], b[0]));
     }
 
-    /// A sum of distances is greatest in a corner of the prism that holds the surface.
+    /// A sum of distances is greatest at a corner of the prism that contains the surface.
     double reach(const std::array<MeshTriangle::End, 2>& ends, const MeshTriangle& triangle) const {
         double farthest = 0;
         for (const TexCoord& corner : triangle.corner) {
@@ -285,7 +285,7 @@ class Refinement {
     std::map<std::array<std::array<std::int64_t, 2>, 2>, std::uint32_t> base_edges_;
     std::vector<MeshTriangle> triangles_;
     std::vector<MeshEdge> edges_;
-    std::vector<std::uint32_t> changed_;  // edges to rate after a split
+    std::vector<std::uint32_t> changed_;  // edges to be rated after a split
     std::priority_queue<Candidate> candidates_;
     SplitHierarchy hierarchy_;
 };

@@ -7,8 +7,8 @@
 
 namespace tessera {
 
-/// The texels that a table for a map and a base mesh covers: the map's; where it clamps and the base mesh reaches
-/// beyond it, as many more.
+/// The texels covered by a table for a map and a base mesh: the map's or, if it clamps and the base mesh extends beyond
+/// it, correspondingly more.
 inline datapath::MapGeometry table_extent(const datapath::MapGeometry& map, const std::vector<TextureTriangle>& base,
                                           const datapath::Formats& formats) {
     datapath::MapGeometry extent = map;

@@ -32,7 +32,7 @@ TriangleFit fit_triangle(const QuantisedMap& map, const TextureTriangle& triangl
         fit.squared += share * error * error;
         fit.largest = std::max(fit.largest, std::abs(error));
         for (std::size_t k = 0; k < 3; ++k) {
-            const double rise = 2 * std::min(at[k], at[(k + 1) % 3]);  // where the midpoint of edge k rises by 1
+            const double rise = 2 * std::min(at[k], at[(k + 1) % 3]);  // if the midpoint of edge k rises by 1
             fit.lean[k] += share * error * rise;
             fit.weight[k] += share * rise * rise;
         }

@@ -12,7 +12,7 @@ std::uint16_t code_under(const QuantisedMap& map, const datapath::TexCoord& t, c
 
 /// How well a triangle, flat between the codes of its corners, fits the map's codes at the grid points it covers.
 ///
-/// A grid point on an edge counts half: the other half is the neighbour's. If edge k is bisected and its midpoint lies
+/// A grid point on an edge counts half, since the neighbour counts it too. If edge k is bisected and its midpoint lies
 /// z above the edge, the squared error is squared - 2 z lean[k] + z^2 weight[k].
 struct TriangleFit {
     double squared = 0;                          ///< sum of squared errors
