@@ -36,16 +36,16 @@ void declare_hardware(const Keys& key) {
     constexpr unsigned any_count = 2147483647;
     key.template add_choice<TriangleOrder>(
         "queue_order", [](auto& d) -> auto& { return d.queue.order; },
-        "Triangle Queue: which waiting triangle goes next, the oldest or the newest");
+        "Triangle Queue: first in first out, or last in first out");
     key.add_number(
         "queue_watermark", [](auto& d) -> auto& { return d.queue.watermark; }, "triangles", {1, any_count},
-        "Host triangles are taken while fewer than this many wait");
+        "Get Triangle accepts triangles from the host while fewer than this many wait in the queue");
     key.add_number(
         "queue_capacity", [](auto& d) -> auto& { return d.queue.capacity; }, "triangles", {0, any_count},
-        "Timed mode: Triangle Queue's places on chip; 0: unbounded");
+        "Timed mode: on-chip capacity of the Triangle Queue; 0: unbounded");
     key.add_number(
         "off_chip_triangles", [](auto& d) -> auto& { return d.queue.off_chip_triangles; }, "triangles", {1, 1000000000},
-        "Timed mode: places for spilled triangles in off-chip memory");
+        "Timed mode: capacity of off-chip memory for spilled triangles");
     key.template add_choice<QueueOverflow>(
         "queue_overflow", [](auto& d) -> auto& { return d.queue.overflow; },
         "Timed mode: a full queue spills to off-chip memory, stalls the pipeline, or halts the clock");
@@ -54,21 +54,21 @@ void declare_hardware(const Keys& key) {
         "Timed mode: Tessellation Tests units, 1 or 3 (one for each edge of a triangle)");
     key.template add_choice<Work>(
         "work", [](auto& d) -> auto& { return d.work; },
-        "What goes round through the Triangle Queue: each triangle (the paper's), or "
-        "those that are known to split, whose children are then tested as a family");
+        "Contents of the Triangle Queue. triangle: every child (the paper's); family: only "
+        "triangles that are known to split, whose children are then tested together");
     key.template add_choice<TestOrder>(
         "test_order", [](auto& d) -> auto& { return d.test_order; },
-        "All tests of an edge at once (the paper's), or those that read no table "
-        "first and the others only if the decision still depends on them");
+        "parallel: all tests of an edge at once (the paper's); cheap_first: first the tests that "
+        "read no table, the others only if the decision still depends on them");
     key.add_number(
         "edge_lanes", [](auto& d) -> auto& { return d.edge_lanes; }, "-", {1, 9},
-        "Timed mode, of families with the cheap tests first: edges a cycle into the cheap tests");
+        "Timed mode, with work = family and test_order = cheap_first: lanes of the cheap tests");
     key.add_number(
         "normal_tests", [](auto& d) -> auto& { return d.normal_tests; }, "-", {1, 9},
-        "Timed mode, likewise: Normal Tests, which share the lanes' edges");
+        "Timed mode, likewise: Normal Tests, shared by the lanes");
     key.add_number(
         "transform_pipelines", [](auto& d) -> auto& { return d.transform_pipelines; }, "-", {1, 16},
-        "Timed mode: Transform pipelines that take turns");
+        "Timed mode: Transform pipelines, used in turn");
 }
 
 }  // namespace

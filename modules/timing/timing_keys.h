@@ -18,13 +18,13 @@ inline constexpr unsigned most_places = 65536;    // of a buffer
 template <typename Keys, typename Select>
 void declare_unit_keys(const Keys& key, const std::string& leaf, const std::string& name, Select unit,
                        const std::string& besides_latency = "",
-                       const std::string& buffered = "items that may wait at its input") {
+                       const std::string& buffered = "capacity of its input buffer") {
     key.add_number(
         leaf + "_latency", [unit](auto& t) -> auto& { return unit(t).latency; }, "cycles", {1, most_cycles},
-        name + ": from an item's start to its result" + besides_latency);
+        name + ": latency, from an item's start to its result" + besides_latency);
     key.add_number(
         leaf + "_interval", [unit](auto& t) -> auto& { return unit(t).interval; }, "cycles", {1, most_cycles},
-        name + ": between the starts of two items");
+        name + ": initiation interval");
     key.add_number(
         leaf + "_buffer", [unit](auto& t) -> auto& { return unit(t).buffer; }, "items", {1, most_places},
         name + ": " + buffered);
@@ -39,27 +39,27 @@ void declare_memory_keys(const Keys& key, const std::string& leaf, const std::st
         leaf + "_banks", [memory](auto& t) -> auto& { return memory(t).banks; }, "-", {1, 64}, name + ": banks");
     key.add_number(
         leaf + "_latency", [memory](auto& t) -> auto& { return memory(t).latency; }, "cycles", {0, most_places},
-        name + ": from an entry's address to its data");
+        name + ": latency, from an entry's address to its data");
     key.add_number(
         leaf + "_width", [memory](auto& t) -> auto& { return memory(t).width; }, "bytes a cycle", {0, 64},
-        name + ": what a port moves; 0: a whole entry");
+        name + ": width of a port; 0: a whole entry");
     key.add_number(
         leaf + "_buffer", [memory](auto& t) -> auto& { return memory(t).buffer; }, "requests", {1, most_places},
-        name + ": requests that may wait");
+        name + ": capacity of its request buffer");
     key.add_number(
         leaf + "_cache_bytes", [memory](auto& t) -> auto& { return memory(t).cache.bytes; }, "bytes", {0, 1 << 30},
         name +
-            ": 0: on chip; else it lies in off-chip memory, behind a cache of this size (at least a line), which has "
-            "the ports, banks and latency above");
+            ": size of its cache, at least a line, which has the ports, banks and latency above, with the table in "
+            "off-chip memory; 0: the table is on chip");
     key.add_number(
         leaf + "_line_bytes", [memory](auto& t) -> auto& { return memory(t).cache.line_bytes; }, "bytes", {1, 4096},
-        name + ": of a line of its cache; as many whole entries as fit, at least one");
+        name + ": size of a cache line, rounded down to whole entries, at least one");
     key.add_number(
         leaf + "_cache_ways", [memory](auto& t) -> auto& { return memory(t).cache.ways; }, "lines", {1, 64},
-        name + ": lines of its cache in which an entry may lie");
+        name + ": associativity of its cache");
     key.add_number(
         leaf + "_cache_fills", [memory](auto& t) -> auto& { return memory(t).cache.fills; }, "lines", {1, most_places},
-        name + ": lines under way to its cache, and requests that wait there");
+        name + ": most outstanding fills of its cache, and requests that wait for them");
 }
 
 /// Declares the figures of Timing, as keys of a job file and as parameters of CCI. For each figure one call:
@@ -70,14 +70,14 @@ template <typename Keys>
 void declare_timing_keys(const Keys& key) {
     key.add_number(
         "clock_period", [](auto& t) -> auto& { return t.cycle_picoseconds; }, "picoseconds", {1, 1000000000},
-        "The clock's period");
+        "Clock period");
     declare_unit_keys(
         key, "get_triangle", "Get Triangle", [](auto& t) -> auto& { return t.get_triangle; });
     declare_unit_keys(
         key, "calculate_new_p", "Calculate New P", [](auto& t) -> auto& { return t.calculate_new_p; });
     declare_unit_keys(
         key, "displace_vertex", "Displace Vertex", [](auto& t) -> auto& { return t.displace_vertex; },
-        ", table reads come on top");
+        ", not including table reads");
     declare_unit_keys(
         key, "transform", "Transform", [](auto& t) -> auto& { return t.transform; });
     declare_unit_keys(
@@ -86,30 +86,32 @@ void declare_timing_keys(const Keys& key) {
         key, "tex_coord_test", "Tex Coord Test", [](auto& t) -> auto& { return t.tex_coord_test; });
     declare_unit_keys(
         key, "summed_height_test", "Summed Height Test", [](auto& t) -> auto& { return t.summed_height_test; },
-        ", table reads come on top");
+        ", not including table reads");
     declare_unit_keys(
-        key, "rank_test", "Rank Test", [](auto& t) -> auto& { return t.rank_test; }, ", table reads come on top");
+        key, "rank_test", "Rank Test", [](auto& t) -> auto& { return t.rank_test; }, ", not including table reads");
     declare_unit_keys(
         key, "curvature_test", "Curvature Test", [](auto& t) -> auto& { return t.curvature_test; },
-        ", table reads come on top");
+        ", not including table reads");
     declare_unit_keys(
-        key, "mipmap_test", "Mipmap Test", [](auto& t) -> auto& { return t.mipmap_test; }, ", table reads come on top");
+        key, "mipmap_test", "Mipmap Test", [](auto& t) -> auto& { return t.mipmap_test; },
+        ", not including table reads");
     declare_unit_keys(
-        key, "normal_test", "Normal Test", [](auto& t) -> auto& { return t.normal_test; }, ", table reads come on top");
+        key, "normal_test", "Normal Test", [](auto& t) -> auto& { return t.normal_test; },
+        ", not including table reads");
     key.add_number(
         "highlight_test_latency", [](auto& t) -> auto& { return t.highlight_test_latency; }, "cycles", {0, most_cycles},
-        "Highlight Test, if there is one: what it adds to the Normal Test's latency");
+        "Highlight Test, if there is one: added to the Normal Test's latency");
     declare_unit_keys(
         key, "view_test", "View Test", [](auto& t) -> auto& { return t.view_test; });
     key.add_number(
         "results_buffer", [](auto& t) -> auto& { return t.results_buffer; }, "edges", {1, most_places},
-        "Edges decided by one test that may wait for the other three");
+        "Capacity of each input buffer of Collect Tests: results of one test that wait for the other three");
     key.add_number(
         "edges_in_sequence", [](auto& t) -> auto& { return t.edges_in_sequence; }, "edges", {1, most_places},
-        "With hardware.test_order = \"cheap_first\": edges that have not left, from their cheap tests' results on");
+        "With hardware.test_order = \"cheap_first\": capacity of Sequence Tests, in edges whose cheap tests are done");
     declare_unit_keys(
         key, "pass_or_tessellate", "Pass or Tessellate", [](auto& t) -> auto& { return t.pass_or_tessellate; }, "",
-        "triangles of which not all parts have come from both branches");
+        "triangles that wait for parts from either branch");
     declare_unit_keys(
         key, "tessellation", "Tessellation", [](auto& t) -> auto& { return t.tessellation; });
     declare_unit_keys(
@@ -124,12 +126,12 @@ void declare_timing_keys(const Keys& key) {
         key, "summed_height_table", "Summed Height Table", [](auto& t) -> auto& { return t.summed_height_table; });
     key.template add_choice<Interleave>(
         "summed_height_table_interleave", [](auto& t) -> auto& { return t.summed_height_table.interleave; },
-        "Summed Height Table: the bank of an entry, entry by entry or by exclusive ORs of bits of its column and row "
-        "(banks: a power of two)");
+        "Summed Height Table: how entries are assigned to banks. entry: one after another; xor: by exclusive ORs of bits "
+        "of column and row (the number of banks is then a power of two)");
     key.add_number(
         "summed_height_table_window", [](auto& t) -> auto& { return t.summed_height_table.window; }, "rectangles",
         {0, most_places},
-        "Summed Height Table: rectangles whose reads may overlap; 0: those that find each of their banks free");
+        "Summed Height Table: rectangles whose reads may overlap; 0: a rectangle is read when all of its banks are free");
     declare_memory_keys(
         key, "rank_table", "Rank Table", [](auto& t) -> auto& { return t.rank_table; });
     declare_memory_keys(
@@ -138,22 +140,22 @@ void declare_timing_keys(const Keys& key) {
         key, "mipmap_table", "Mipmap Table", [](auto& t) -> auto& { return t.mipmap_table; });
     key.add_number(
         "off_chip_latency", [](auto& t) -> auto& { return t.off_chip_memory.latency; }, "cycles", {0, most_places},
-        "Off-chip memory: from a request's last byte to its answer");
+        "Off-chip memory: latency, from a request's last byte to its answer");
     key.add_number(
         "off_chip_bandwidth", [](auto& t) -> auto& { return t.off_chip_memory.bandwidth; }, "bytes a cycle", {1, 4096},
-        "Off-chip memory: both directions together");
+        "Off-chip memory: bandwidth, both directions together");
     key.add_number(
         "off_chip_buffer", [](auto& t) -> auto& { return t.off_chip_memory.buffer; }, "requests", {1, most_places},
-        "Off-chip memory: requests that may wait");
+        "Off-chip memory: capacity of its request buffer");
     key.add_number(
         "stalls_per_mille", [](auto& t) -> auto& { return t.stalls.per_mille; }, "per mille of items", {0, 1000},
-        "For tests: items delayed at random on every channel");
+        "For tests: items that are delayed at random, on every channel");
     key.add_number(
         "stalls_longest", [](auto& t) -> auto& { return t.stalls.longest; }, "cycles", {1, 1000000},
-        "For tests: the longest of these delays");
+        "For tests: longest delay");
     key.add_number(
         "stalls_seed", [](auto& t) -> auto& { return t.stalls.seed; }, "-", {0, 2147483647},
-        "For tests: seed of these delays");
+        "For tests: seed of the delays");
 }
 
 }  // namespace tessera

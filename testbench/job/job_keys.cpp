@@ -198,18 +198,18 @@ std::vector<KeyTable> declare_keys() {
     TableList list;
     // clang-format off
     list.top_level("How the model runs.", [](const auto& key) {
-        key.add("mode", &Job::mode, "functional: every result but no cycle counts, fastest; timed: accurate to the cycle");
+        key.add("mode", &Job::mode, "functional: all results except cycle counts, fastest; timed: cycle-accurate");
     });
     list.table("mesh", &Job::mesh, "The base mesh.", [](const auto& key) {
         using Mesh = Job::Mesh;
-        key.add("source", &Mesh::source, "A built-in shape; file: the mesh in mesh.file (the default if mesh.file is given); patches: the Bezier patches in it; run: the mesh of an earlier run; lattice: a plane whose vertices lie at centres of texels, mesh.spacing apart, and which reaches beyond the map where that does not divide it");
-        key.add("file", &Mesh::file, KeyKind::file, "OBJ file, with mesh.source = \"file\"; with \"patches\" one of bicubic Bezier patches as Newell's teapot has it; with \"run\" the folder of an earlier run");
-        key.add("fingerprint", &Mesh::fingerprint, KeyKind::text, "64-bit FNV-1a hash of the file (of a run's mesh.ply), 16 hexadecimal digits; another file is refused. A run writes it into its job.toml; empty: any file");
+        key.add("source", &Mesh::source, "A built-in shape; file: the mesh in mesh.file (the default if mesh.file is given); patches: the Bezier patches in mesh.file; run: the mesh of an earlier run; lattice: a plane whose vertices lie at centres of texels, mesh.spacing apart. A lattice extends beyond the map if mesh.spacing does not divide the map's size");
+        key.add("file", &Mesh::file, KeyKind::file, "With mesh.source = \"file\" an OBJ file; with \"patches\" a file of bicubic Bezier patches in the format of Newell's teapot; with \"run\" the folder of an earlier run");
+        key.add("fingerprint", &Mesh::fingerprint, KeyKind::text, "64-bit FNV-1a hash of the file (of a run's mesh.ply), 16 hexadecimal digits; a file with another hash is refused. A run writes it into its job.toml; empty: any file");
         key.add("columns", &Mesh::columns, "quads", between(0, 2048), "Quads along u; 0: 3 for the plane, 4 for each patch, 32 for cylinder and sphere, which need 3 or more");
         key.add("rows", &Mesh::rows, "quads", between(0, 2048), "Quads along v; 0: 3 for the plane, 4 for each patch, 32 for cylinder and sphere; a sphere needs 2 or more");
-        key.add("spacing", &Mesh::spacing, "texels", between(1, 2048), "Between the vertices of a lattice: a power of two");
-        key.add("width", &Mesh::width, "model units", length_range, "Size of the plane along x; of the map under a lattice");
-        key.add("depth", &Mesh::depth, "model units", length_range, "Size of the plane along y; of the map under a lattice");
+        key.add("spacing", &Mesh::spacing, "texels", between(1, 2048), "Distance between the vertices of a lattice: a power of two");
+        key.add("width", &Mesh::width, "model units", length_range, "Size of the plane along x; with a lattice, of the map");
+        key.add("depth", &Mesh::depth, "model units", length_range, "Size of the plane along y; with a lattice, of the map");
         key.add("radius", &Mesh::radius, "model units", length_range, "Radius of the cylinder or sphere");
         key.add("height", &Mesh::height, "model units", length_range, "Height of the cylinder");
     });
@@ -217,34 +217,34 @@ std::vector<KeyTable> declare_keys() {
         using Map = Job::Map;
         key.add("source", &Map::source, "A built-in map; file: the image in map.file (the default if map.file is given)");
         key.add("file", &Map::file, KeyKind::file, "EXR, PNG or PGM file, with map.source = \"file\"");
-        key.add("fingerprint", &Map::fingerprint, KeyKind::text, "64-bit FNV-1a hash of the file, 16 hexadecimal digits; another file is refused. A run writes it into its job.toml; empty: any file");
+        key.add("fingerprint", &Map::fingerprint, KeyKind::text, "64-bit FNV-1a hash of the file, 16 hexadecimal digits; a file with another hash is refused. A run writes it into its job.toml; empty: any file");
         key.add("channel", &Map::channel, KeyKind::text, "Channel of an EXR file; empty: Y, else R, else the only one");
         key.add("width", &Map::width, "texels", between(1, 4096), "Width of a built-in map");
         key.add("height", &Map::height, "texels", between(1, 4096), "Height of a built-in map");
         key.add("value", &Map::value, "full scale", between(0, 1), "Value of the constant map");
         key.add("seed", &Map::seed, "-", between(0, 4294967295.0), "Seed of the noise map");
         key.add("text", &Map::text, KeyKind::text, "Text of the text map");
-        key.add("range", &Map::range, "the map's own units", coordinate_range, "Which map values displacement.scale spans: full, what the source can hold (0 to the maximum value of a PGM, to 255 or 65535 of a PNG; 0 to 1 of an EXR and of built-in maps); data, the lowest to the highest that occurs; or [low, high]. Values outside it extrapolate linearly. With data or [low, high] the displacement codes span the values that occur, and so does the full scale of tests.summed_height_threshold");
-        key.add("heights", &Map::heights, "What the displacement map holds: the map's heights, or heights fitted to it: the host finds the mesh of the job's own thresholds and gives its vertices those with which its squared error at the texels' centres is least. The tests' tables stay those of the map, and errors are measured against it");
-        key.add("address_u", &Map::address_u, "Beyond the map's left and right border; repeat closes a cylinder's seam");
-        key.add("address_v", &Map::address_v, "Beyond the map's lower and upper border");
+        key.add("range", &Map::range, "the map's own units", coordinate_range, "The range of map values that displacement.scale spans: full, all values that the source can represent (PGM: 0 to its maximum value; PNG: 0 to 255 or 65535; EXR and built-in maps: 0 to 1); data, from the lowest to the highest value that occurs; or [low, high]. Values outside the range extrapolate linearly. With data or [low, high] the displacement codes, and the full scale of tests.summed_height_threshold, span the values that occur");
+        key.add("heights", &Map::heights, "Contents of the displacement map: the map's heights, or fitted heights. To fit them the host finds the mesh that the job's thresholds give, and chooses the heights of its vertices that minimise its squared error at the texel centres. The tables of the tests remain those of the map, and errors are measured against the map");
+        key.add("address_u", &Map::address_u, "Addressing beyond the map's left and right border; repeat closes a cylinder's seam");
+        key.add("address_v", &Map::address_v, "Addressing beyond the map's lower and upper border");
     });
     list.table("displacement", &Job::displacement, "From map value to height along the normal: bias + scale * (value - low) / (high - low), with low and high of map.range.", [](const auto& key) {
         using Displacement = Job::Displacement;
-        key.add("scale", &Displacement::scale, "model units", auto_or(coordinate_range), "Height from the low to the high end of map.range; auto: an eighth of the base mesh's largest extent if it is flat (its smallest extent under a tenth of the next), else a fortieth; reduced where values lie outside map.range, so that the highest displacement stays the same");
+        key.add("scale", &Displacement::scale, "model units", auto_or(coordinate_range), "Difference in height between the low and the high end of map.range; auto: an eighth of the base mesh's largest extent if the mesh is flat (its smallest extent less than a tenth of the next), else a fortieth; reduced if values lie outside map.range, so that the highest displacement stays the same");
         key.add("bias", &Displacement::bias, "model units", coordinate_range, "Height at the low end of map.range");
     });
-    list.table("frames", &Job::frames, "Several frames that differ in the displacement's scale, each a run folder of its own: frame_000, ... in output.folder.", [](const auto& key) {
+    list.table("frames", &Job::frames, "Several frames with different displacement scales, each in its own run folder: frame_000, ... in output.folder.", [](const auto& key) {
         using Frames = Job::Frames;
-        key.add("count", &Frames::count, "frames", between(1, 1000), "Number of frames; frame k of n has the scale first_scale + (displacement.scale - first_scale) * k / (n - 1); 1: a plain run, of displacement.scale");
-        key.add("first_scale", &Frames::first_scale, "model units", coordinate_range, "displacement.scale of frame 0; the last frame has the job's own");
+        key.add("count", &Frames::count, "frames", between(1, 1000), "Number of frames; frame k of n has the scale first_scale + (displacement.scale - first_scale) * k / (n - 1); 1: a single run with displacement.scale");
+        key.add("first_scale", &Frames::first_scale, "model units", coordinate_range, "Scale of frame 0; the last frame has the job's displacement.scale");
     });
-    list.table("camera", &Job::camera, "The view, on which the View Test depends.", [](const auto& key) {
+    list.table("camera", &Job::camera, "The camera, which the View Test depends on.", [](const auto& key) {
         using Camera = Job::Camera;
-        key.add("eye", &Camera::eye, "model units", auto_or(coordinate_range), "Position of the camera; auto: 20 degrees to the right of the front and 38 degrees above it, as near as the displaced model's bounding box, of all frames together, fits into 90 % of the picture's width and height. Front is -y, or z where up is y");
-        key.add("target", &Camera::target, "model units", auto_or(coordinate_range), "Point it looks at; auto: the centre of that bounding box");
-        key.add("up", &Camera::up, "-", auto_or(coordinate_range), "Direction that is up in the picture, of any length; auto: y for an OBJ file that is not flat, the axis it is flat in (on the side of its normals) for one that is, the earlier run's camera.up for a run on an OBJ file (or on a run), z for every other source; if the camera looks along that axis, away from the model's front");
-        key.add("field_of_view", &Camera::field_of_view, "degrees", between(0.1, 179), "Vertical opening angle");
+        key.add("eye", &Camera::eye, "model units", auto_or(coordinate_range), "Position of the camera; auto: 20 degrees to the right of the front and 38 degrees above it, at the distance at which the bounding box of the displaced model, over all frames, fits into 90 % of the picture's width and height. The front is -y, or z if up is y");
+        key.add("target", &Camera::target, "model units", auto_or(coordinate_range), "Point that the camera looks at; auto: the centre of that bounding box");
+        key.add("up", &Camera::up, "-", auto_or(coordinate_range), "Direction that points up in the picture, of any length; auto: for an OBJ file y, or if it is flat the axis perpendicular to it, on the side of its normals; for a run on an OBJ file (or on a run) the earlier run's camera.up; for any other source z. If the camera looks along that axis, the direction away from the model's front");
+        key.add("field_of_view", &Camera::field_of_view, "degrees", between(0.1, 179), "Vertical field of view");
         key.add("near_plane", &Camera::near_plane, "model units", auto_or(distance_range), "Distance of the near plane; vertices on or behind it have no screen position; auto: a thousandth of the distance from eye to target");
         key.add("viewport_width", &Camera::viewport_width, "pixels", between(1, 16384), "Width of the picture");
         key.add("viewport_height", &Camera::viewport_height, "pixels", between(1, 16384), "Height of the picture");
@@ -252,26 +252,26 @@ std::vector<KeyTable> declare_keys() {
     list.table("tests", &Job::tests, "The edge tests: split = (normal or summed_height or highlight) and view and tex_coord and generation.", [](const auto& key) {
         using Tests = Job::Tests;
         key.add("normal", &Tests::normal, "Normal Test; off: never requests a split");
-        key.add("normal_threshold", &Tests::normal_threshold, "unit normal component", between(0, 2), "Normal Test: a component of two normals that differs by more splits the edge");
-        key.add("summed_height", &Tests::summed_height, "Summed Height Test, or the test in its place (hardware.height_test); off: never requests a split");
-        key.add("summed_height_threshold", &Tests::summed_height_threshold, "full-scale texels (sum), full scale (area)", between(0, 1e9), "Summed Height Test: an edge splits where S_ij / 2 and (S_i + S_j) / 4 differ by more (sum), or 2 S_ij and S_i + S_j by more than it times the rectangle's area (area)");
-        key.add("summed_height_unit", &Tests::summed_height_unit, "What the threshold compares: sums over rectangles, or the second difference of their mean heights (area)");
-        key.add("rank_view", &Tests::rank_view, "With hardware.height_test = \"rank\": what its thresholds measure. none: errors of the surface; per_point, per_pixel: errors in the picture, in pixels, so that triangles are smaller nearer to camera.eye; every point of the map counts alike, or every pixel. These need hardware.test_order = \"cheap_first\"");
-        key.add("rank_threshold", &Tests::rank_threshold, "full scale times the root of a texel; pixels times the root of a texel (per_point), of a pixel (per_pixel)", between(0, 1e9), "With hardware.height_test = \"rank\" and formats.rank_bits: an edge splits if its midpoint takes more off the squared error, per triangle that it costs: the root of it");
-        key.add("bound_threshold", &Tests::bound_threshold, "full scale; pixels (per_point, per_pixel)", between(0, 1e6), "With hardware.height_test = \"rank\" and formats.bound_bits: no point of the map lies farther from the mesh, along the normal, or appears farther from it in the picture; of a mesh that the rank's lattice fits, with hardware.triangulation = greatest_rank");
-        key.add("curvature_threshold", &Tests::curvature_threshold, "full scale times texels", between(0, 1e9), "With hardware.height_test = \"curvature\": an edge splits if the map leaves its chord by more than this over the edge's length, in texels and rounded up to a power of two");
-        key.add("mipmap_filter", &Tests::mipmap_filter, "With hardware.height_test = \"mipmap\": what a block of texels has for its height, the mean or the maximum");
-        key.add("mipmap_threshold", &Tests::mipmap_threshold, "full scale", between(0, 1), "With hardware.height_test = \"mipmap\": an edge splits if the filtered map at its midpoint leaves the chord between those at its ends by more");
+        key.add("normal_threshold", &Tests::normal_threshold, "unit normal component", between(0, 2), "Normal Test: an edge requests a split if a component of two of its normals differs by more");
+        key.add("summed_height", &Tests::summed_height, "Summed Height Test, or its replacement (hardware.height_test); off: never requests a split");
+        key.add("summed_height_threshold", &Tests::summed_height_threshold, "full-scale texels (sum), full scale (area)", between(0, 1e9), "Summed Height Test: an edge requests a split if S_ij / 2 and (S_i + S_j) / 4 differ by more (sum), or if 2 S_ij and S_i + S_j differ by more than the threshold times the rectangle's area (area)");
+        key.add("summed_height_unit", &Tests::summed_height_unit, "Quantity that the threshold is compared with: sums over rectangles, or the second difference of their mean heights (area)");
+        key.add("rank_view", &Tests::rank_view, "With hardware.height_test = \"rank\": the error that its thresholds measure. none: on the surface; per_point, per_pixel: in the picture, in pixels, so that triangles are smaller nearer to camera.eye, with each point of the map, or each pixel, weighted equally. The latter two need hardware.test_order = \"cheap_first\"");
+        key.add("rank_threshold", &Tests::rank_threshold, "full scale times the root of a texel; pixels times the root of a texel (per_point), of a pixel (per_pixel)", between(0, 1e9), "With hardware.height_test = \"rank\" and formats.rank_bits: an edge requests a split if the square root of the squared error that its midpoint removes, per added triangle, is larger");
+        key.add("bound_threshold", &Tests::bound_threshold, "full scale; pixels (per_point, per_pixel)", between(0, 1e6), "With hardware.height_test = \"rank\" and formats.bound_bits: largest distance of a point of the map from the mesh, along the normal, or as it appears in the picture. Holds for a base mesh on the rank's lattice, with hardware.triangulation = greatest_rank");
+        key.add("curvature_threshold", &Tests::curvature_threshold, "full scale times texels", between(0, 1e9), "With hardware.height_test = \"curvature\": an edge requests a split if the map deviates from its chord by more than the threshold divided by the edge's length in texels, rounded up to a power of two");
+        key.add("mipmap_filter", &Tests::mipmap_filter, "With hardware.height_test = \"mipmap\": height of a block of texels, their mean or their maximum");
+        key.add("mipmap_threshold", &Tests::mipmap_threshold, "full scale", between(0, 1), "With hardware.height_test = \"mipmap\": an edge requests a split if the filtered height at its midpoint deviates by more from the mean of those at its ends");
         key.add("view", &Tests::view, "View Test; off: allows every split");
-        key.add("view_threshold", &Tests::view_threshold, "pixels", between(0, 1e6), "View Test: only a longer edge (Manhattan length on screen) is split");
-        key.add("tex_coord", &Tests::tex_coord, "Tex Coord Test, ends at the map's resolution; off: allows every split");
-        key.add("generation", &Tests::generation, "Generation Test; off: allows every split, and a run may not end");
-        key.add("generation_limit", &Tests::generation_limit, "generations", between(0, 15), "Generation Test: the highest generation a new vertex may have");
-        key.add("highlight", &Tests::highlight, "Highlight Test, for per-vertex lighting: finer triangles where the Phong highlight of hardware.light is; off: the design has none");
-        key.add("highlight_angle", &Tests::highlight_angle, "degrees", between(0, 90), "Highlight Test: a normal lies in the highlight if it is nearer than this to the half vector between the directions to the light and to the viewer (camera.eye - camera.target)");
-        key.add("highlight_normal_threshold", &Tests::highlight_normal_threshold, "unit normal component", between(0, 2), "Highlight Test: an edge with a normal in the highlight is split if a component of two of its normals differs by more");
+        key.add("view_threshold", &Tests::view_threshold, "pixels", between(0, 1e6), "View Test: only an edge that is longer on the screen (Manhattan length) may be split");
+        key.add("tex_coord", &Tests::tex_coord, "Tex Coord Test: stops at the map's resolution; off: allows every split");
+        key.add("generation", &Tests::generation, "Generation Test; off: allows every split, so that a run may never end");
+        key.add("generation_limit", &Tests::generation_limit, "generations", between(0, 15), "Generation Test: largest generation of a new vertex");
+        key.add("highlight", &Tests::highlight, "Highlight Test, for per-vertex lighting: smaller triangles in the Phong highlight of hardware.light; off: the design has no Highlight Test");
+        key.add("highlight_angle", &Tests::highlight_angle, "degrees", between(0, 90), "Highlight Test: a normal lies in the highlight if it is within this angle of the half vector between the directions to the light and to the viewer (camera.eye - camera.target)");
+        key.add("highlight_normal_threshold", &Tests::highlight_normal_threshold, "unit normal component", between(0, 2), "Highlight Test: an edge with a normal in the highlight requests a split if a component of two of its normals differs by more");
     });
-    list.table("formats", &Job::formats, "Fixed-point formats of the hardware; bits count the sign where there is one.", [](const auto& key) {
+    list.table("formats", &Job::formats, "Fixed-point formats of the hardware. The bits of signed formats include the sign.", [](const auto& key) {
         using Formats = Job::Formats;
         using Limits = datapath::FormatLimits;
         const auto within = [](const Limits::Range& range) { return between(range.least, range.most); };
@@ -281,70 +281,70 @@ std::vector<KeyTable> declare_keys() {
         key.add("normal_fraction", &Formats::normal_fraction, "bits", within(Limits::normal_fraction), "Normals: fraction bits, at least 2 fewer than normal_bits");
         key.add("texture_integer", &Formats::texture_integer, "bits", within(Limits::texture_integer), "Texture coordinates, unsigned, in texels: integer bits");
         key.add("texture_fraction", &Formats::texture_fraction, "bits", within(Limits::texture_fraction), "Texture coordinates: fraction bits");
-        key.add("tex_coord_fraction", &Formats::tex_coord_fraction, "bits", between(-1, Limits::tex_coord_fraction.most), "Tex Coord Test: fraction bits of texture coordinates that it compares, at most texture_fraction. 0, the paper's: it ends at texels; 1: at half texels; -1: 1 with hardware.displacement_filter = \"bilinear\", whose heights change within texels, else 0");
+        key.add("tex_coord_fraction", &Formats::tex_coord_fraction, "bits", between(-1, Limits::tex_coord_fraction.most), "Tex Coord Test: fraction bits of the texture coordinates it compares, at most texture_fraction. 0 (the paper's): it stops at texels; 1: at half texels; -1: 1 with hardware.displacement_filter = \"bilinear\", whose heights vary within texels, else 0");
         key.add("displacement_bits", &Formats::displacement_bits, "bits", within(Limits::displacement_bits), "Displacement map, unsigned");
-        key.add("summed_height_bits", &Formats::summed_height_bits, "bits", zero_or_between(Limits::summed_height_bits.least, Limits::summed_height_bits.most), "Summed Height Table, unsigned; 0: the narrowest of 32, 40, 48 the mesh needs");
+        key.add("summed_height_bits", &Formats::summed_height_bits, "bits", zero_or_between(Limits::summed_height_bits.least, Limits::summed_height_bits.most), "Summed Height Table, unsigned; 0: the least of 32, 40 and 48 that the mesh needs");
         key.add("screen_bits", &Formats::screen_bits, "bits", within(Limits::screen_bits), "Screen positions, signed, in pixels");
         key.add("screen_fraction", &Formats::screen_fraction, "bits", within(Limits::screen_fraction), "Screen positions: fraction bits, fewer than screen_bits");
-        key.add("rank_bits", &Formats::rank_bits, "bits", zero_or_between(Limits::rank_bits.least, Limits::rank_bits.most), "Rank Table: of a rank; 0: none");
-        key.add("bound_bits", &Formats::bound_bits, "bits", zero_or_between(Limits::bound_bits.least, Limits::bound_bits.most), "Rank Table: of a bound; 0: none");
+        key.add("rank_bits", &Formats::rank_bits, "bits", zero_or_between(Limits::rank_bits.least, Limits::rank_bits.most), "Rank Table: width of a rank; 0: the table has none");
+        key.add("bound_bits", &Formats::bound_bits, "bits", zero_or_between(Limits::bound_bits.least, Limits::bound_bits.most), "Rank Table: width of a bound; 0: the table has none");
         key.add("generation_bits", &Formats::generation_bits, "bits", within(Limits::generation_bits), "Generation of a vertex, unsigned");
     });
     list.table("hardware", &Job::hardware, "The units' options.", [](const auto& key) {
         using Hardware = Job::Hardware;
-        key.add("design", &Hardware::design, "Sets a design's keys, which a job may then set alone: the paper's, or one that leaves out what the paper's does twice (modules/README.md, Designs); the mesh is the same");
-        key.add("triangulation", &Hardware::triangulation, "Diagonal when two edges split: the shorter one, or always the first or second; greatest_rank: of the edges that ask to be split the one of greatest rank is cut, with hardware.height_test = \"rank\"");
-        key.add("height_test", &Hardware::height_test, "The Summed Height Test (the paper's), or in its place the Rank Test: the host ranks the points of the base mesh's lattice, and an edge splits if the rank of its midpoint is above the threshold; or the Curvature Test, for any base mesh: the host fits quadratics to the map, and an edge splits if they leave its chord; or the Mipmap Test, which the paper weighs its own against: the map filtered down to an edge's length in place of sums");
+        key.add("design", &Hardware::design, "Presets the keys of a design; each may be overridden. paper: the paper's; modern: a design that avoids its repeated work (modules/README.md, Designs); the mesh is the same");
+        key.add("triangulation", &Hardware::triangulation, "Diagonal when two edges split: the shorter one, or always the first or the second; greatest_rank, with hardware.height_test = \"rank\": only the edge of greatest rank is split, of those that request it");
+        key.add("height_test", &Hardware::height_test, "summed_height: the paper's Summed Height Test. In its place: rank: the host ranks the points of the base mesh's lattice, and an edge requests a split if the rank of its midpoint exceeds the threshold; curvature, for any base mesh: the host fits quadratics to the map, and an edge requests a split if they deviate from its chord; mipmap, the alternative that the paper discusses: compares heights of the map filtered to the edge's length");
         key.add("culling", &Hardware::culling, "Back-face culling of finished triangles");
-        key.add("queue_order", &Hardware::queue_order, "Triangle Queue: which waiting triangle goes next, the oldest or the newest");
-        key.add("queue_watermark", &Hardware::queue_watermark, "triangles", between(1, any_count), "Host triangles are taken while fewer than this many wait");
-        key.add("queue_capacity", &Hardware::queue_capacity, "triangles", between(0, any_count), "Timed mode: Triangle Queue's places on chip; 0: unbounded");
-        key.add("off_chip_triangles", &Hardware::off_chip_triangles, "triangles", between(1, 1000000000), "Timed mode: places for spilled triangles in off-chip memory; a run that needs more ends with exit code 4");
+        key.add("queue_order", &Hardware::queue_order, "Triangle Queue: first in first out, or last in first out");
+        key.add("queue_watermark", &Hardware::queue_watermark, "triangles", between(1, any_count), "Get Triangle accepts triangles from the host while fewer than this many wait in the queue");
+        key.add("queue_capacity", &Hardware::queue_capacity, "triangles", between(0, any_count), "Timed mode: on-chip capacity of the Triangle Queue; 0: unbounded");
+        key.add("off_chip_triangles", &Hardware::off_chip_triangles, "triangles", between(1, 1000000000), "Timed mode: capacity of off-chip memory for spilled triangles; a run that needs more ends with exit code 4");
         key.add("queue_overflow", &Hardware::queue_overflow, "Timed mode: a full queue spills to off-chip memory, stalls the pipeline, or ends the run with exit code 4");
         key.add("tests_units", &Hardware::tests_units, "-", between(1, 3), "Timed mode: Tessellation Tests units, 1 or 3 (one for each edge of a triangle)");
-        key.add("work", &Hardware::work, "What goes round through the Triangle Queue: each triangle (the paper's), or the triangles that are known to split, whose children are then tested as a family; the mesh is the same");
-        key.add("test_order", &Hardware::test_order, "All tests of an edge at once (the paper's), or those that read no table first and the others only if the decision still depends on them; the mesh is the same");
-        key.add("final_edges", &Hardware::final_edges, "A child's edge that was tested with its parent and not split is not tested again; off: the paper's; the mesh is the same");
-        key.add("one_texel_from_map", &Hardware::one_texel_from_map, "Vertices carry their displacement codes, and the Summed Height Test takes the sum over a rectangle of one texel from them and from the displacement map; off: the paper's, from the Summed Height Table; the mesh is the same");
-        key.add("displacement_filter", &Hardware::displacement_filter, "How the displacement map and the normal map are read: the texel under a vertex (the paper's), or between the four around it; another surface, and four reads instead of one");
-        key.add("edge_lanes", &Hardware::edge_lanes, "-", between(1, 9), "Timed mode, of families with the cheap tests first: edges a cycle into the cheap tests");
-        key.add("normal_tests", &Hardware::normal_tests, "-", between(1, 9), "Timed mode, likewise: Normal Tests, which share the lanes' edges");
-        key.add("transform_pipelines", &Hardware::transform_pipelines, "-", between(1, 16), "Timed mode: Transform pipelines that take turns");
-        key.add("machines", &Hardware::machines, "-", between(1, 16), "Whole machines side by side, each with its own tables and off-chip memory; base triangle k goes to machine k modulo their number");
+        key.add("work", &Hardware::work, "Contents of the Triangle Queue. triangle: every child (the paper's); family: only triangles that are known to split, whose children are then tested together; the mesh is the same");
+        key.add("test_order", &Hardware::test_order, "parallel: all tests of an edge at once (the paper's); cheap_first: first the tests that read no table, the others only if the decision still depends on them; the mesh is the same");
+        key.add("final_edges", &Hardware::final_edges, "An edge that was tested in a parent and not split is not tested again in its children; off: the paper's; the mesh is the same");
+        key.add("one_texel_from_map", &Hardware::one_texel_from_map, "Vertices carry their displacement codes; for rectangles of one texel, the Summed Height Test uses these and one read of the displacement map instead of the Summed Height Table; off: the paper's; the mesh is the same");
+        key.add("displacement_filter", &Hardware::displacement_filter, "Filter of the displacement map and the normal map. nearest: the texel under a vertex (the paper's); bilinear: between the four texels around it, which gives another surface and takes four reads instead of one");
+        key.add("edge_lanes", &Hardware::edge_lanes, "-", between(1, 9), "Timed mode, with work = \"family\" and test_order = \"cheap_first\": lanes of the cheap tests, each of one edge per cycle");
+        key.add("normal_tests", &Hardware::normal_tests, "-", between(1, 9), "Timed mode, likewise: Normal Tests, shared by the lanes");
+        key.add("transform_pipelines", &Hardware::transform_pipelines, "-", between(1, 16), "Timed mode: Transform pipelines, used in turn");
+        key.add("machines", &Hardware::machines, "-", between(1, 16), "Number of complete machines, each with its own tables and off-chip memory; base triangle k goes to machine k modulo their number");
         key.add("direct_memory", &Hardware::direct_memory, "Functional mode reads the memories through DMI");
         key.add("light", &Hardware::light, "-", coordinate_range, "Direction towards the light, world space, of any length");
-        key.add("ambient", &Hardware::ambient, "full scale", between(0, 1), "Light that falls on every surface");
+        key.add("ambient", &Hardware::ambient, "full scale", between(0, 1), "Ambient light");
     });
     list.table("timing", &Job::timing, "Timed mode: the datasheet figures of every unit and memory.", [](const auto& key) {
-        key.add("engine", &Job::TimingSettings::engine, "How a run is timed, with the same results: by a schedule, several times as fast, or by a clock that calls each unit in each cycle; auto: by a schedule where the design and the options of the run have one (modules/schedule/README.md)");
+        key.add("engine", &Job::TimingSettings::engine, "Timing engine; the results are the same. schedule: computes each item's cycles from those of earlier items, several times as fast; clocked: calls the units cycle by cycle; auto: schedule if the design and the run's options support it (modules/schedule/README.md)");
         declare_timing_keys(key);
     });
     list.table("check", &Job::check, "What a run checks.", [](const auto& key) {
         using Check = Job::Check;
-        key.add("golden", &Check::golden, "Every edge's decision against the golden model (scoreboard), and every register and table entry against what golden derives from the job by itself");
-        key.add("end_to_end", &Check::end_to_end, "Golden run of the whole mesh, compared with the hardware's; also every register and table entry, as with check.golden");
-        key.add("invariants", &Check::invariants, "The emitted mesh is the datapath's own, bit for bit, and closed, without T-vertices");
-        key.add("allowed_flips", &Check::allowed_flips, "percent of edges", between(0, 100), "Decisions that differ within the formats' error bound; more fail the run");
-        key.add("allowed_triangles", &Check::allowed_triangles, "percent of triangles", between(0, 1000), "Largest difference in the number of triangles between golden's own run and the hardware; beyond it the run fails, as it does if three times that share of the points lies farther from the other surface than rounding explains. A run whose positions saturate is not judged by it. Raise it for thresholds finer than the formats");
-        key.add("work", &Check::work, "No triangle is lost, doubled or altered on its way through the machine, and what goes into a unit comes out of another");
-        key.add("reads", &Check::reads, "Every table read against what the memory holds; in functional mode reads then go by transaction, which is slow");
+        key.add("golden", &Check::golden, "Compares every edge's decision with the golden model (scoreboard), and every register and table entry with the value that golden derives from the job independently");
+        key.add("end_to_end", &Check::end_to_end, "Compares golden's own mesh of the whole job with the hardware's; also every register and table entry, as with check.golden");
+        key.add("invariants", &Check::invariants, "Checks that the emitted mesh equals the bare datapath's, bit for bit, and is closed, without T-vertices");
+        key.add("allowed_flips", &Check::allowed_flips, "percent of edges", between(0, 100), "Largest share of decisions that may differ within the formats' error bound; beyond it the run fails");
+        key.add("allowed_triangles", &Check::allowed_triangles, "percent of triangles", between(0, 1000), "Largest difference in the number of triangles between golden's own run and the hardware; beyond it the run fails. It also fails if more than three times that share of the points lie farther from the other surface than rounding explains. Not applied to a run whose positions saturate. Raise it for thresholds finer than the formats");
+        key.add("work", &Check::work, "Checks that no triangle is lost, duplicated or altered on its way through the machine, and that each unit receives what the unit before it sends");
+        key.add("reads", &Check::reads, "Compares every table read with the memory's contents; in functional mode reads are then transactions, which is slow");
     });
-    list.table("limits", &Job::limits, "Where a run gives up.", [](const auto& key) {
+    list.table("limits", &Job::limits, "Limits at which a run is stopped.", [](const auto& key) {
         using Limits = Job::Limits;
-        key.add("cycles_without_progress", &Limits::cycles_without_progress, "cycles", between(1, any_count), "Timed mode: cycles in which units were at work and no triangle was decided or lit; more end the run with exit code 3");
-        key.add("triangles", &Limits::triangles, "triangles", between(1, any_count), "Emitted triangles; more end the run with exit code 4");
+        key.add("cycles_without_progress", &Limits::cycles_without_progress, "cycles", between(1, any_count), "Timed mode: most consecutive cycles in which units work and no triangle is decided or lit; beyond it the run ends with exit code 3");
+        key.add("triangles", &Limits::triangles, "triangles", between(1, any_count), "Most emitted triangles; beyond it the run ends with exit code 4");
     });
     list.table("output", &Job::output, "What a run writes.", [](const auto& key) {
         using Output = Job::Output;
         key.add("folder", &Output::folder, KeyKind::folder, "Folder of the run");
         key.add("ply", &Output::ply, "Write the mesh as binary PLY");
-        key.add("obj", &Output::obj, "Write the mesh as OBJ too: text, some five times as large as mesh.ply");
+        key.add("obj", &Output::obj, "Also write the mesh as OBJ: text, about five times as large as mesh.ply");
         key.add("picture", &Output::picture, "Write picture.png");
-        key.add("vcd", &Output::vcd, "Timed mode: write waveforms, trace.vcd; with several machines, of the first");
-        key.add("timeline", &Output::timeline, "Timed mode: write activity per unit in the Chrome trace format, timeline.json; with several machines, of the first");
+        key.add("vcd", &Output::vcd, "Timed mode: write waveforms, trace.vcd; of several machines, the first");
+        key.add("timeline", &Output::timeline, "Timed mode: write each unit's activity in the Chrome trace format, timeline.json; of several machines, the first");
         key.add("trace_from", &Output::trace_from, "cycles", between(0, most_trace), "First cycle of waveforms and timeline");
         key.add("trace_to", &Output::trace_to, "cycles", between(0, most_trace), "Last cycle of waveforms and timeline");
-        key.add("trace_units", &Output::trace_units, KeyKind::text, "Waveforms of those units only whose name contains one of these words; empty: all");
+        key.add("trace_units", &Output::trace_units, KeyKind::text, "Waveforms only of units whose name contains one of these words; empty: all");
     });
     // clang-format on
     return list.take();
