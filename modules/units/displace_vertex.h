@@ -10,13 +10,13 @@ namespace tessera {
 
 /// Displace Vertex (paper figure 7): P' = P + (S * d(t) + bias) * N, the one added long-latency unit.
 ///
-/// In:   BasePoint. Out: DisplacedPoint: the same and, for an edge or vertex, P'; normals unchanged. In the family design
-///       also N' of a base triangle's vertex.
+/// In:   BasePoint. Out: DisplacedPoint: the same and, for an edge or vertex, P'; normals unchanged. In the family
+///       design also N' of a base triangle's vertex.
 /// Memory: one read of the displacement map per vertex or edge; in the family design one read of the normal map per
 ///       vertex. With a bilinear filter (Formats::filter) each read is one request of four entries.
 /// Arithmetic: normalise an edge's normal (the pipeline's existing unit; in the family design it arrives normalised),
-///       multiply, round, multiply-accumulate, saturate (counted). In the family design bump a vertex's normal. A bilinear
-///       filter first interpolates: three multiplications per code, nine per normal.
+///       multiply, round, multiply-accumulate, saturate (counted). In the family design bump a vertex's normal. A
+///       bilinear filter first interpolates: three multiplications per code, nine per normal.
 /// Timing: one vertex, normal or edge per interval; latency 6 plus the map read; interval 1 by default, or that of the
 ///       map reads if longer: four cycles per edge with a bilinear filter and one port.
 /// Waits for the displacement map and the normal map; held back by Transform.

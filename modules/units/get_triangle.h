@@ -18,16 +18,16 @@ namespace tessera {
 ///   re-tessellated         normals that have no N's yet, then the edges that are not final
 ///   finished, without N's  its normals only: no edge is tested again
 ///
-/// In the family design (Formats::families) it sends nothing to the tests. To Calculate New P it sends the vertices of a
-/// base triangle, or the midpoints of the split edges of a triangle from the queue, with N and N' as found by the tests.
+/// In the family design (Formats::families) it sends nothing to the tests. To Calculate New P it sends the vertices of
+/// a base triangle, or the midpoints of the split edges of a triangle from the queue, with the tests' N and N'.
 ///
 /// In:   triangles; the queue's level. Out: to Calculate New P all parts, to Tessellation Tests vertices and edges;
 ///       with three Tessellation Tests units edge k and its two vertices to unit k. To Pass or Tessellate the triangle
 ///       itself, for the values that its parts do not carry.
 /// Timing: one part per interval (1) on each output, the first a latency (1) after the triangle was accepted.
 /// Capacity: one triangle; the next is accepted when all parts of the last have been accepted.
-/// Waits for the Triangle Queue or the host; accepts a host triangle only while the queue is below its watermark and has
-/// nothing to send. Held back by Calculate New P, Tessellation Tests and Pass or Tessellate.
+/// Waits for the Triangle Queue or the host; accepts a host triangle only while the queue is below its watermark and
+/// has nothing to send. Held back by Calculate New P, Tessellation Tests and Pass or Tessellate.
 class GetTriangle : public Unit {
   public:
     StreamInput<datapath::Triangle> from_host{"from_host"};

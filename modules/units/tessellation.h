@@ -34,15 +34,15 @@ class TessellatingUnit : public Unit {
 };
 
 /// Tessellation (paper figures 6 and 7): builds the two, three or four children of a triangle from its vertices and
-/// the new ones. Winding order is kept. A child's edge from corner to corner of its parent was tested with the parent and
-/// is final (Formats::final_edges).
+/// the new ones. Winding order is kept. A child's edge from corner to corner of its parent was tested with the parent
+/// and is final (Formats::final_edges).
 ///
 /// In:   DecidedTriangle. Out: its children, one after another; for a finished triangle that still needs its normals,
 ///       the triangle itself.
 /// Arithmetic: wiring; with the `shorter` diagonal two Manhattan lengths (6 subtractions, 4 adds), a margin (1
 ///       subtraction) and a compare. New vertices' generations saturate (counted), only with the Generation Test off.
-/// Timing: one child per interval, the first a latency after the triangle was accepted; latency 1, interval 1 by default.
-///       Capacity: one triangle; the next is accepted when the last child has been accepted.
+/// Timing: one child per interval, the first a latency after the triangle was accepted; latency 1, interval 1 by
+///       default. Capacity: one triangle; the next is accepted when the last child has been accepted.
 /// Waits only for its input; held back by the Triangle Queue.
 class Tessellation : public TessellatingUnit {
   public:

@@ -10,7 +10,7 @@
 
 namespace tessera {
 
-/// Joins the results of the four tests for Pass or Tessellate (paper figure 8). An edge leaves when all four have decided.
+/// Joins the results of the four tests for Pass or Tessellate (paper figure 8): an edge leaves when all have decided.
 ///
 /// In:   each test's result. Out: TestedEdge, once.
 /// Timing: one edge per cycle, no latency of its own: wires. Capacity: for each test `results_buffer` edges that wait

@@ -12,11 +12,11 @@ namespace tessera {
 ///
 /// In:   HeightOperands. Out: HeightResult.
 /// Memory: one entry of the Curvature Table per edge, from the level that matches the edge's length. For an edge of at
-///         most two texels the displacement map instead: the codes of its ends and of its midpoint, in one request, through
-///         the map's second side (table_memory.h); if the map has a cache, through the cache that Displace Vertex reads.
-/// Arithmetic: a count of leading zeros and shifts for the level; three products of 4 x 4 bits, three of 8 x 7, their sum,
-///         a shift, a compare.
-/// Timing: latency 4 after the last entry; interval 1 by default. With one port the codes of a short edge take three cycles.
+///         most two texels the displacement map instead: the codes of its ends and of its midpoint, in one request,
+///         through the map's second side (table_memory.h) or, if the map has a cache, through Displace Vertex's cache.
+/// Arithmetic: a count of leading zeros and shifts for the level; three products of 4 x 4 bits, three of 8 x 7, their
+///         sum, a shift, a compare.
+/// Timing: latency 4 after the last entry; interval 1 by default. With one port a short edge's codes take three cycles.
 /// Waits for Calculate New U, the Curvature Table and the displacement map; held back by the collector of the tests.
 class CurvatureTest : public HeightTestUnit {
   public:

@@ -8,8 +8,8 @@
 
 namespace tessera {
 
-/// Common base of the Summed Height Test and of the tests that a design may have in its place (datapath::HeightTest), each
-/// with its own table.
+/// Common base of the Summed Height Test and of the tests that a design may have in its place (datapath::HeightTest),
+/// each with its own table.
 ///
 /// In:   HeightOperands. Out: HeightResult.
 class HeightTestUnit : public Stage<HeightOperands, HeightResult> {

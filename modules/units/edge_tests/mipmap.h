@@ -7,11 +7,11 @@
 
 namespace tessera {
 
-/// Mipmap Test, in place of the Summed Height Test: does the filtered map at the edge's midpoint deviate from the chord?
-/// The alternative that the paper (2.3.1) compares its test with. The host fills the table with means or with maxima.
+/// Mipmap Test, in place of the Summed Height Test: does the filtered map at the edge's midpoint deviate from the
+/// chord? The paper (2.3.1) names it as an alternative. The host fills the table with means or with maxima.
 ///
 /// In:   HeightOperands. Out: HeightResult.
-/// Memory: three entries of the Mipmap Table per edge, at its ends and its midpoint, from the level that matches its length.
+/// Memory: three entries of the Mipmap Table per edge, at its ends and midpoint, from the level that matches its length.
 /// Arithmetic: a count of leading zeros and shifts for the level; two adds, a compare.
 /// Timing: latency 2 after the last entry; interval 1 by default. With one port an edge's entries take three cycles.
 /// Waits for Calculate New U and the Mipmap Table; held back by the collector of the tests.

@@ -20,10 +20,10 @@ namespace tessera {
 ///       entries.
 /// Arithmetic: add, shift by 1; the pipeline's existing normalise and bump units; six absolute differences and
 ///       compares, one OR. A bilinear filter adds nine multiplications. The Highlight Test adds three dot products with
-///       one vector, six compares with a second threshold and three with a cosine; it uses the Normal Test's differences.
-/// Timing: one edge or vertex per interval; latency 9 plus the map read; interval 1 by default, or that of the map reads
-///       if longer. A Highlight Test adds its own latency, 1 by default, and nothing to the interval.
-///       An edge of a base triangle starts when the map entries of all its corners in this unit have arrived.
+///       one vector, six compares with a second threshold and three with a cosine; the differences are shared.
+/// Timing: one edge or vertex per interval; latency 9 plus the map read; interval 1 by default, or that of the map
+///       reads if longer. A Highlight Test adds its own latency, 1 by default, and nothing to the interval. An edge of
+///       a base triangle starts when the map entries of all its corners in this unit have arrived.
 /// State: a base triangle's tag, and N' of its corners.
 /// Waits for Calculate New U and the normal map. Held back by the collector of the tests.
 class NormalTest : public Stage<NormalOperands, NormalResult> {

@@ -6,8 +6,8 @@
 
 namespace tessera {
 
-/// Rank Test, in place of the Summed Height Test: does the mesh need the edge's midpoint? The host has ranked every point
-/// of the base mesh's lattice beforehand.
+/// Rank Test, in place of the Summed Height Test: does the mesh need the edge's midpoint? The host has ranked every
+/// point of the base mesh's lattice beforehand.
 ///
 /// In:   HeightOperands. Out: HeightResult, with the rank, by which the `greatest_rank` cut chooses.
 /// Memory: one entry of the Rank Table per edge of even length: a rank, a bound, or both. In the view-dependent variant

@@ -13,8 +13,8 @@ namespace tessera {
 /// Sequence Tests: replaces Collect Tests in a design whose tests are evaluated cheapest first. It sends an edge to a
 /// test only if the decision still depends on that test (sequencing_unit.h).
 ///
-/// In:   from Calculate New U the operands of the two table tests; vertices of a base triangle, which go on to the Normal
-///       Test; each test's result.
+/// In:   from Calculate New U the operands of the two table tests; vertices of a base triangle, which go on to the
+///       Normal Test; each test's result.
 /// Out:  operands to the Normal and the Summed Height Test; TestedEdge, once, in order of arrival, with the tests that
 ///       were evaluated.
 /// Arithmetic: none.

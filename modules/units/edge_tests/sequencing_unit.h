@@ -14,14 +14,14 @@ namespace tessera {
 /// (families/sequence_tests.h): determines which tests an edge needs, and runs them in functional mode.
 ///
 ///   Tex Coord Test (with Generation), View Test   every edge; they read no table
-///   Normal Test                                   edges that none of these keeps whole; in the triangle design also the
-///                                                 edges of a base triangle, which carry the N' of its vertices
+///   Normal Test                                   edges that none of these keeps whole; in the triangle design also
+///                                                 a base triangle's edges, which carry the N' of its vertices
 ///   Summed Height Test                            edges that may split, and that neither Normal nor Highlight Test
 ///                                                 splits
 ///
-/// A Rank Test, which reads one entry, is evaluated before the Normal Test, except for the edges of a base triangle. Edges
-/// without a midpoint on the lattice skip it. The Normal Test then receives the edges that the Rank Test splits, for N' of
-/// their midpoints, and the others only if it is switched on.
+/// A Rank Test, which reads one entry, is evaluated before the Normal Test, except for the edges of a base triangle.
+/// Edges without a midpoint on the lattice skip it. The Normal Test then receives the edges that the Rank Test splits,
+/// for N' of their midpoints, and the others only if it is switched on.
 class SequencingUnit : public Unit {
   public:
     StreamOutput<HeightOperands> to_summed_height_test{"to_summed_height_test"};

@@ -32,7 +32,7 @@ class ViewTest : public Stage<ViewOperands, ViewResult> {
     void trace_signals(Signals& signals) const override;
 
   protected:
-    /// The corners of a base triangle that have arrived, and their positions; in functional mode, the time of the last one.
+    /// The corners of a base triangle that have arrived, and their positions; in functional mode, the time of the last.
     struct Corners {
         Parts come = 0;
         std::array<datapath::ScreenPosition, 3> screen;

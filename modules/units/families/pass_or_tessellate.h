@@ -20,12 +20,12 @@ namespace tessera {
 /// children.
 ///
 /// In:   each family from Tessellation, and its tested edges, in any order; the last one completes it.
-/// Out:  to Lighting the children without split edges; to the Triangle Queue the children that split, with N, T and N' of
-///       their split edges. Both in the order of the families. A base triangle is the only child of its family.
+/// Out:  to Lighting the children without split edges; to the Triangle Queue the children that split, with N, T and N'
+///       of their split edges. Both in the order of the families. A base triangle is the only child of its family.
 /// Arithmetic: logic; for culling two products of screen bits + 1 and a compare.
-/// Timing: one family per interval is decided, when its last edge has arrived; then one child per interval leaves on each
-///       output, the first a latency later; latency 1, interval 1 by default. A culled child takes an interval of the
-///       output to Lighting.
+/// Timing: one family per interval is decided, when its last edge has arrived; then one child per interval leaves on
+///       each output, the first a latency later; latency 1, interval 1 by default. A culled child takes an interval of
+///       the output to Lighting.
 /// Capacity: `buffer` families (8), from arrival until the last child has left.
 /// Waits for Tessellation Tests; held back by Lighting and the Triangle Queue.
 class FamilyPassOrTessellate : public DecidingUnit {
@@ -51,7 +51,7 @@ class FamilyPassOrTessellate : public DecidingUnit {
         datapath::Triangle triangle;
         Way way = Way::dropped;
     };
-    /// A family, its edges' results, and then its children; in functional mode, the time at which the last edge arrived.
+    /// A family, its edges' results, and then its children; in functional mode, the arrival time of the last edge.
     struct Place {
         Family family;
         datapath::ChildIndices indices;

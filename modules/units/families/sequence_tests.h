@@ -12,11 +12,11 @@
 
 namespace tessera {
 
-/// Sequence Tests in the family design. Several lanes of cheap tests share one or more Normal Tests and the Summed Height
-/// Test. An edge leaves as soon as it is decided: Pass or Tessellate accepts a family's edges in any order.
+/// Sequence Tests in the family design. Several lanes of cheap tests share one or more Normal Tests and the Summed
+/// Height Test. An edge leaves as soon as it is decided: Pass or Tessellate accepts a family's edges in any order.
 ///
-/// In:   from each lane the operands of the two table tests and the results of the cheap tests; the results of the table
-///       tests.
+/// In:   from each lane the operands of the two table tests and the results of the cheap tests; the results of the
+///       table tests.
 /// Out:  operands to the Normal Tests and to the Summed Height Test; TestedEdge, once, on any lane: an edge with the
 ///       tests that were evaluated.
 /// Arithmetic: none.

@@ -18,14 +18,14 @@ namespace tessera {
 /// vertices; its three edges are new.
 ///
 /// In:   each triangle from Get Triangle, and its parts from Transform; the last part completes it.
-/// Out:  to Pass or Tessellate the triangle and its inserted vertices; once these are accepted, to Tessellation Tests the
-///       edges, every n-th to each of n lanes.
+/// Out:  to Pass or Tessellate the triangle and its inserted vertices; once these are accepted, to Tessellation Tests
+///       the edges, every n-th to each of n lanes.
 /// Arithmetic: wiring; with the `shorter` diagonal two Manhattan lengths and a compare. New vertices' generations
 ///       saturate (counted), which can only happen with the Generation Test off.
 /// Timing: the family and the first edge of each lane a latency after the last part arrived, then one per
 ///       interval; latency 1, interval 1 by default.
-/// Capacity: one triangle being joined and one whose edges are being sent; triangles wait at the input from Get Triangle
-///       until their first part arrives (triangles_ahead_of_parts).
+/// Capacity: one triangle being joined and one whose edges are being sent; triangles wait at the input from Get
+///       Triangle until their first part arrives (triangles_ahead_of_parts).
 /// Waits for Transform; held back by Tessellation Tests and Pass or Tessellate.
 class FamilyTessellation : public TessellatingUnit {
   public:
