@@ -71,7 +71,7 @@ struct DisplacedPoint : BasePoint {
     }
 };
 
-/// Transform to Pass or Tessellate. n of a normal is now N's. In the family design displaced_n is N's, and n of a vertex N'.
+/// Transform to Pass or Tessellate. n of a normal is now N's; in the family design displaced_n is, and n of a vertex N'.
 struct ScreenPoint : DisplacedPoint {
     static constexpr const char* name = "screen point";
     datapath::ScreenPosition screen;
@@ -360,8 +360,8 @@ struct DecidedTriangle {
     }
 };
 
-/// Tessellation to Pass or Tessellate, in the family design: a triangle and the vertices inserted on its split edges; or
-/// a base triangle, whose edges are new.
+/// Tessellation to Pass or Tessellate, in the family design: a triangle and the vertices inserted on its split edges;
+/// or a base triangle, whose edges are new.
 struct Family {
     static constexpr const char* name = "family";
     Tag tag = 0;
@@ -391,8 +391,8 @@ struct Family {
     }
 };
 
-/// From host, Tessellation and Triangle Queue: a triangle as it waits in the queue. For a base triangle the host sets P,
-/// N, T, handedness and t of each vertex.
+/// From host, Tessellation and Triangle Queue: a triangle as it waits in the queue. For a base triangle the host sets
+/// P, N, T, handedness and t of each vertex.
 struct QueuedTriangle {
     static constexpr const char* name = "triangle";
 

@@ -15,8 +15,8 @@ namespace tessera {
 
 /// A unit's port to a memory, for entries of one size: table entries, or records in off-chip memory.
 ///
-/// Functional mode: read(). Uses DMI if the memory grants it and the unit may use it, else b_transport; values, added time
-/// and counts are the same.
+/// Functional mode: read(). Uses DMI if the memory grants it and the unit may use it, else b_transport; values, added
+/// time and counts are the same.
 /// Timed mode: requests (memory_request.h). One on offer at a time, several under way, answered in order. The unit is
 /// called when a delayed request is accepted and when an answer arrives.
 /// Errors: responses other than OK, and violations of the protocol, are SC_ERRORs that name the port.

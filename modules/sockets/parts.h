@@ -23,8 +23,8 @@ constexpr Parts triangle_edge_parts = 0700;
 constexpr Parts edge_parts = 077700;
 constexpr Parts all_parts = 077777;
 
-/// The parts of a triangle that go to Calculate New P: those that are not known yet and, unless the triangle is finished,
-/// the edges that are not final; in the family design, the edges that split.
+/// The parts of a triangle that go to Calculate New P: those that are not known yet and, unless the triangle is
+/// finished, the edges that are not final; in the family design, the edges that split.
 constexpr Parts parts_of(const datapath::Triangle& triangle, Work work = Work::triangle) {
     unsigned parts = unsigned{triangle.split} << first_edge_part;
     if (work == Work::triangle)
@@ -39,8 +39,8 @@ constexpr Parts parts_of(const datapath::Triangle& triangle, Work work = Work::t
     return static_cast<Parts>(parts);
 }
 
-/// The parts that go to Tessellation Tests unit `number` of 1 or 3: all vertices and edges or, with three units, one edge
-/// and its two vertices.
+/// The parts that go to Tessellation Tests unit `number` of 1 or 3: all vertices and edges or, with three units, one
+/// edge and its two vertices.
 constexpr Parts parts_for_tests(unsigned number, unsigned units) {
     if (units == 1)
         return vertex_parts | edge_parts;

@@ -6,9 +6,9 @@
 
 namespace tessera {
 
-/// Protocol of the streams between units. Streams are not memory-mapped, hence a traits class of their own. The payload is
-/// the item itself (items.h); the phases are those of TLM-2.0; the producer is the initiator (StreamOutput), the consumer
-/// the target (StreamInput).
+/// Protocol of the streams between units. Streams are not memory-mapped, hence a traits class of their own. The payload
+/// is the item itself (items.h); the phases are those of TLM-2.0; the producer is the initiator (StreamOutput), the
+/// consumer the target (StreamInput).
 ///
 /// b_transport (functional mode): on return the consumer and everything downstream have finished; `delay` is added to,
 /// never overwritten. The producer owns the payload, which is not written.

@@ -12,8 +12,8 @@
 
 namespace tessera {
 
-/// A unit's input. Functional mode: forwards b_transport to the unit. Timed mode: a buffer of `depth` items; while it is
-/// full, the next item waits and END_REQ is withheld. Checks the producer's phases.
+/// A unit's input. Functional mode: forwards b_transport to the unit. Timed mode: a buffer of `depth` items; while it
+/// is full, the next item waits and END_REQ is withheld. Checks the producer's phases.
 template <class Payload>
 class StreamInput : public tlm::tlm_target_socket<32, Stream<Payload>>,
                     public tlm::tlm_fw_transport_if<Stream<Payload>>,

@@ -6,8 +6,8 @@
 
 namespace tessera {
 
-/// State that a unit keeps for each of a few triangles, in order of arrival and looked up by the triangle's tag: a small
-/// content-addressable memory. It grows in functional mode, where triangles can overtake one another.
+/// State that a unit keeps for each of a few triangles, in order of arrival and looked up by the triangle's tag: a
+/// small content-addressable memory. It grows in functional mode, where triangles can overtake one another.
 template <class State>
 class PerTriangle {
   public:

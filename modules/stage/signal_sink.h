@@ -14,7 +14,7 @@ class SignalSink {
     /// first value.
     virtual Signal add(const std::string& scope, const std::string& name, unsigned bits) = 0;
 
-    /// Sets the value from this cycle on. Bits beyond the signal's width are dropped; signed values are in two's complement.
+    /// Sets the value from this cycle on. Bits beyond the signal's width are dropped; signed values: two's complement.
     virtual void set(Signal signal, std::uint64_t value) = 0;
 
     /// Sets the value to 1 in this cycle and to 0 in the next, unless it is set or pulsed there.

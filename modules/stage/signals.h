@@ -65,8 +65,8 @@ class Signals {
     /// For signals that hold their values while `known` is false: whether to call them now. Always true when declaring.
     bool when(bool known) const { return declaring_ || known; }
 
-    /// A stream's input. valid: an item is offered; ready: an item is accepted; stalled: an item still waits at the end of
-    /// the cycle; waiting: items in the buffer. Several transfers in one cycle show as one.
+    /// A stream's input. valid: an item is offered; ready: an item is accepted; stalled: an item still waits at the end
+    /// of the cycle; waiting: items in the buffer. Several transfers in one cycle show as one.
     template <class Input>
     void input(const Input& input, const char* scope = "") {
         inner_scope_ = scope;

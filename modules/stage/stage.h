@@ -14,13 +14,13 @@ namespace tessera {
 
 class MemoryPort;
 
-/// A unit that accepts an item, reads any table entries it needs, processes it, and passes the result on. A derived unit
-/// declares its sockets once and implements the functions below; both modes run the same functions.
+/// A unit that accepts an item, reads any table entries it needs, processes it, and passes the result on. A derived
+/// unit declares its sockets once and implements the functions below; both modes run the same functions.
 ///
 /// Timed mode: an item starts when the interval is over, a register stage is free and the memory has accepted the
-/// requests of the previous item. It is finished a latency after its start or, if it reads, after its last answer. Items
-/// leave in order. There are ceil((latency + the memory's latency) / interval) register stages, so that neither latency
-/// reduces throughput. Functional mode: reads, processes the item, adds the latency, and passes the result on.
+/// requests of the previous item. It is finished a latency after its start or, if it reads, after its last answer.
+/// Items leave in order. There are ceil((latency + the memory's latency) / interval) register stages, so that neither
+/// latency reduces throughput. Functional mode: reads, processes the item, adds the latency, and passes the result on.
 template <class In, class Out>
 class Stage : public Unit {
   public:

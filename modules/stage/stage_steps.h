@@ -33,7 +33,7 @@ struct Stage<In, Out>::Machinery {
     Machinery(const UnitTiming& timing, unsigned pipelines, unsigned memory_latency)
         : servers(pipelines), pipeline(timing, pipelines, memory_latency) {}
 
-    /// Makes the requests of the item started last, as far as the memories accept them. Returns true once all are accepted.
+    /// Makes the requests of the item started last while the memories accept them. Returns true once all are accepted.
     bool ask() {
         for (; asked < reads.requests(); ++asked) {
             MemoryPort& port = *ports[reads.port(asked)];
