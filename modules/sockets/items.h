@@ -71,7 +71,7 @@ struct DisplacedPoint : BasePoint {
     }
 };
 
-/// Transform to Pass or Tessellate. n of a normal is now N's; in the family design displaced_n is, and n of a vertex N'.
+/// Transform to Pass or Tessellate. n of a normal is N's; in the family design displaced_n is, and n of a vertex is N'.
 struct ScreenPoint : DisplacedPoint {
     static constexpr const char* name = "screen point";
     datapath::ScreenPosition screen;

@@ -11,7 +11,7 @@ namespace tessera {
 /// chord? The paper (2.3.1) names it as an alternative. The host fills the table with means or with maxima.
 ///
 /// In:   HeightOperands. Out: HeightResult.
-/// Memory: three entries of the Mipmap Table per edge, at its ends and midpoint, from the level that matches its length.
+/// Memory: three entries of the Mipmap Table per edge, at its ends and midpoint, from the level that fits its length.
 /// Arithmetic: a count of leading zeros and shifts for the level; two adds, a compare.
 /// Timing: latency 2 after the last entry; interval 1 by default. With one port an edge's entries take three cycles.
 /// Waits for Calculate New U and the Mipmap Table; held back by the collector of the tests.
