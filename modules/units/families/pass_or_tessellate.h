@@ -91,7 +91,7 @@ class FamilyPassOrTessellate : public DecidingUnit {
     void end_of_elaboration() override;
 
     PerTriangle<Place> places_;
-    bool front_has_place_ = false;  // the family at the input has one; it stays there while none is free
+    bool front_has_place_ = false;  // the family at the input has a place; it stays there while no other is free
     std::size_t decided_ = 0;       // families in places_ that are decided: the first ones
     std::uint64_t next_decision_ = 0;
     Next next_lit_, next_queued_;
