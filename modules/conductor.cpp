@@ -10,14 +10,14 @@ namespace tessera {
 
 namespace {
 
-/// Passes between two returns to the kernel, so that a stop takes effect.
+/// Passes between two returns to the kernel, so that a stop can take effect.
 constexpr unsigned passes_between_waits = 1024;
 
 schedule::PipelinePlan pipeline_plan(const UnitTiming& timing, unsigned servers = 1, unsigned further_stages = 0) {
     return {timing.latency, timing.interval, servers, register_stages(timing, servers, further_stages)};
 }
 
-/// What a machine's inputs are in timed mode, where they have the same names.
+/// The plans of a machine's inputs as in timed mode, where they have the same names.
 class Inputs {
   public:
     explicit Inputs(const StallParameters& stalls) : stalls_(stalls) {}

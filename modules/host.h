@@ -10,17 +10,17 @@
 
 namespace tessera {
 
-/// Takes bytes that belong at an address of the machine's memory.
+/// Writes bytes to an address of the machine's memory.
 using TableWriter = std::function<void(std::uint64_t address, const unsigned char* bytes, std::size_t count)>;
 
 /// The host CPU (paper figure 7): fills the three tables through the memories' debug transport before simulation
 /// starts, then sends base triangles, one after another, to Get Triangle.
-/// Of several machines each has a host of its own, which sends every so many-th base triangle.
+/// With n machines each has its own host, which sends every n-th base triangle.
 /// Get Triangle blocks it while the Triangle Queue is at its watermark. In timed mode it offers the next triangle in
 /// the cycle in which the last was accepted: the host's bus is not modelled.
 class Host : public sc_core::sc_module, public CycleProcess {
   public:
-    /// Calls the writer it is given with all bytes of the tables, at the addresses of the registers' layouts.
+    /// Calls the given writer with all bytes of the tables, at the addresses of the registers' layouts.
     using FillTables = std::function<void(const TableWriter&)>;
 
     StreamOutput<datapath::Triangle> to_get_triangle{"to_get_triangle"};
@@ -38,10 +38,10 @@ class Host : public sc_core::sc_module, public CycleProcess {
     /// Sends the triangles again when the simulation continues: another frame.
     void send_again();
 
-    /// Of a conducted machine: the triangle that send_next() sends, in functional mode.
+    /// For a conducted machine: the triangle that send_next() sends, in functional mode.
     const datapath::Triangle& next() const { return triangles_[first_ + sent_ * step_]; }
     void send_next(sc_core::sc_time& delay);
-    /// Notified when it has triangles again.
+    /// Notified when the host has triangles again.
     const sc_core::sc_event& again() const { return again_; }
 
     bool idle() const { return sent_ == total() && to_get_triangle.free(); }

@@ -116,7 +116,7 @@ std::unique_ptr<DisplacementMap> Pipeline::make_second_side(const datapath::Regi
 
 namespace {
 
-/// To the table, or to the cache in front of it.
+/// Joins a port to the table, or to the cache in front of it.
 void join(UnitFactory& factory, MemoryPort& port, TableMemory& table, TableCache* cache) {
     if (cache == nullptr)
         factory.join(port, table);

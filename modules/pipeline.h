@@ -23,8 +23,8 @@ namespace tessera {
 ///                └── Triangle Queue <── Tessellation <─────────────────────────────────────┘                 v
 ///                                                                                                       rasteriser
 ///
-/// In a machine of families (Design::work) the queue holds triangles that are known to split, and their children are
-/// tested before they go round:
+/// In the family design (Design::work) the queue holds triangles that are known to split, and their children are tested
+/// before they enter the queue:
 ///
 ///     host ──> Get Triangle ──> Calculate New P ──> Displace Vertex ──> Transform
 ///                ^    │                             (displacement map)      │
@@ -35,7 +35,7 @@ namespace tessera {
 ///                │                         normal map)         v
 ///                └── Triangle Queue <──────────── └─> Pass or Tessellate ──> Lighting ──> rasteriser
 ///
-/// Outside: get_triangle.from_host, lighting.to_rasteriser, and the memories' sockets for the host's preload.
+/// External: get_triangle.from_host, lighting.to_rasteriser, and the memories' sockets for the host's preload.
 class Pipeline : public sc_core::sc_module {
     struct Units {
         std::unique_ptr<GetTriangle> get_triangle;
@@ -65,33 +65,33 @@ class Pipeline : public sc_core::sc_module {
     DisplaceVertex& displace_vertex = *made_.displace_vertex;
     Transform& transform = *made_.transform;
     sc_core::sc_vector<TessellationTests> tessellation_tests;
-    PassOrTessellate* const triangle_pass_or_tessellate = made_.pass_or_tessellate.get();  ///< null: of families
+    PassOrTessellate* const triangle_pass_or_tessellate = made_.pass_or_tessellate.get();  ///< null: family design
     Tessellation* const triangle_tessellation = made_.tessellation.get();
     FamilyPassOrTessellate* const family_pass_or_tessellate = made_.family_pass_or_tessellate.get();
-    FamilyTessellation* const family_tessellation = made_.family_tessellation.get();  ///< null: of triangles
+    FamilyTessellation* const family_tessellation = made_.family_tessellation.get();  ///< null: triangle design
     DecidingUnit& pass_or_tessellate = *made_.deciding();
     TessellatingUnit& tessellation = *made_.tessellating();
     TriangleQueue& triangle_queue = *made_.triangle_queue;
     Lighting& lighting = *made_.lighting;
     OffChipMemory off_chip_memory;
     DisplacementMap displacement_map;
-    std::unique_ptr<DisplacementMap> displacement_map_for_tests;  ///< its second side; null: it has one
+    std::unique_ptr<DisplacementMap> displacement_map_for_tests;  ///< its second side; null: none
     NormalMap normal_map;
     HeightTable height_table;
     std::unique_ptr<TableCache> displacement_map_cache;  ///< null: the table is on chip
     std::unique_ptr<TableCache> normal_map_cache;
     std::unique_ptr<TableCache> height_table_cache;
 
-    /// `registers` must outlive the pipeline. factory: null: the units of this folder. Fixed from now on: the formats, but
-    /// for the view distance's fraction; the tables' bases, the size of their entries, and the memories' capacities, which
-    /// are those of the tables that `registers` describe.
+    /// `registers` must outlive the pipeline. factory: null for the units of this folder. From now on these are fixed:
+    /// the formats, except the view distance's fraction; the tables' bases and entry sizes; the memories' capacities,
+    /// which are those of the tables that `registers` describe.
     Pipeline(const sc_core::sc_module_name& name, const datapath::Registers& registers, const Design& design,
              UnitFactory* factory = nullptr);
 
-    /// Nothing is in flight.
+    /// True if nothing is in flight.
     bool idle() const;
 
-    /// To be called while idle when a table's content or columns have changed.
+    /// Call while idle when a table's content or columns have changed.
     void tables_changed();
 
     /// Notified whenever nothing is left to do and nothing is in flight.
@@ -99,19 +99,19 @@ class Pipeline : public sc_core::sc_module {
 
     /// Every unit and memory, in the order of the figures.
     const std::vector<Unit*>& units() const { return units_; }
-    /// Of the tables that have one.
+    /// The caches of the tables that have one.
     const std::vector<TableCache*>& caches() const { return caches_; }
 
     Transport transport() const { return transport_; }
     bool conducted() const { return conducted_; }
     const datapath::Registers& registers() const { return registers_; }
 
-    /// Items are held back at random.
+    /// True if items are held back at random.
     bool random_stalls() const { return random_stalls_; }
 
     /// Triangles between Get Triangle and the end of their pass, in Tessellation or on the way to Lighting.
     std::uint64_t passes_under_way() const;
-    /// Most triangles that waited for their first part where their parts come together.
+    /// Most triangles that waited for their first part at the unit that joins the parts.
     std::size_t most_ahead_of_parts() const;
     std::uint64_t edges_tested() const { return pass_or_tessellate.counts().edges_tested; }
     std::uint64_t displacement_map_reads() const;

@@ -23,12 +23,12 @@ namespace tessera {
 ///                                                             ↕         ↕
 ///                                                   Normal Test     Summed Height Test
 ///
-/// In a machine of families there may be several lanes of Calculate New U, Tex Coord Test and View Test before Sequence
-/// Tests, and several Normal Tests behind it; edges come from Tessellation, with P's.
+/// In the family design there may be several lanes of Calculate New U, Tex Coord Test and View Test before Sequence
+/// Tests, and several Normal Tests after it; edges arrive from Tessellation, with P's.
 ///
 /// In:   calculate_new_u.input: edges; vertices of a base triangle. view_test.from_transform: their screen positions.
 /// Out:  to_pass_or_tessellate(): TestedEdge.
-/// Of three units, each takes one edge of a triangle and, of a base triangle, the two vertices it joins
+/// With three units each receives one edge of a triangle and, for a base triangle, the two vertices of the edge
 /// (parts_for_tests).
 /// Timing: edges go one after another through one pipeline; bound by the Summed Height Test's table reads. A design has
 ///       one such unit or three, one for each edge of a triangle, which share the memories.
@@ -44,7 +44,7 @@ class TessellationTests : public sc_core::sc_module {
         std::unique_ptr<CollectTests> collect_tests;
         std::unique_ptr<SequenceTests> sequence_tests;
         std::unique_ptr<FamilySequenceTests> family_sequence_tests;
-        // Of families.
+        // Only in the family design.
         std::vector<std::unique_ptr<CalculateNewU>> further_calculate_new_u;
         std::vector<std::unique_ptr<TexCoordTest>> further_tex_coord_tests;
         std::vector<std::unique_ptr<ViewTest>> further_view_tests;
@@ -62,7 +62,7 @@ class TessellationTests : public sc_core::sc_module {
     SequenceTests* const sequence_tests = made_.sequence_tests.get();  ///< null: in parallel, or of families
     FamilySequenceTests* const family_sequence_tests = made_.family_sequence_tests.get();
 
-    /// A lane of cheap tests; of triangles there is one.
+    /// A lane of cheap tests; the triangle design has one.
     struct Lane {
         CalculateNewU& calculate_new_u;
         TexCoordTest& tex_coord_test;
@@ -71,14 +71,14 @@ class TessellationTests : public sc_core::sc_module {
     const std::vector<Lane>& lanes() const { return lanes_; }
     const std::vector<NormalTest*>& normal_tests() const { return normal_tests_; }
 
-    /// number: of the unit, from 0.
+    /// number: that of the unit, from 0.
     TessellationTests(const sc_core::sc_module_name& name, const UnitContext& context, UnitFactory& factory,
                       unsigned number);
 
-    /// Binds the units inside to one another. To be called once.
+    /// Binds the units inside to one another. Call once.
     void wire();
 
-    /// Where an edge's results come together.
+    /// The unit that joins an edge's results.
     Unit& collector() const;
     StreamOutput<TestedEdge>& to_pass_or_tessellate(std::size_t lane = 0) const;
 

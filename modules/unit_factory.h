@@ -30,9 +30,9 @@
 
 namespace tessera {
 
-/// Makes a machine's units. Override a function to put a variant in a unit's place: a class derived from the unit,
-/// which has its sockets (modules/README.md, "How to replace a unit"). A variant may also be the same unit with another
-/// context, for example one with stalls for that unit alone. Called during elaboration only.
+/// Makes a machine's units. Override a function to replace a unit by a variant: a class derived from the unit, with its
+/// sockets (modules/README.md, "How to replace a unit"). A variant may also be the same unit with another context, for
+/// example with stalls for that unit only. Called during elaboration only.
 class UnitFactory {
   public:
     UnitFactory() = default;
@@ -59,7 +59,7 @@ class UnitFactory {
     virtual std::unique_ptr<TexCoordTest> tex_coord_test(Name name, const UnitContext& context) {
         return std::make_unique<TexCoordTest>(name, context);
     }
-    /// By the design's kind, which the functions below make.
+    /// Makes the design's kind of height test by one of the functions below.
     std::unique_ptr<HeightTestUnit> height_test(const UnitContext& context) {
         const datapath::HeightTest kind = context.registers.formats.height_test;
         const char* const name = kind_of(kind).unit;
@@ -101,7 +101,7 @@ class UnitFactory {
     virtual std::unique_ptr<Tessellation> tessellation(Name name, const UnitContext& context) {
         return std::make_unique<Tessellation>(name, context);
     }
-    /// In a machine of families.
+    /// In the family design.
     virtual std::unique_ptr<FamilyPassOrTessellate> family_pass_or_tessellate(Name name, const UnitContext& context) {
         return std::make_unique<FamilyPassOrTessellate>(name, context);
     }
@@ -122,7 +122,7 @@ class UnitFactory {
     /// (StreamOutput).
     virtual void made(sc_core::sc_module& /*module*/) {}
 
-    /// Joins a unit's port to its memory. Both sides of a displacement map that has two are memories here.
+    /// Joins a unit's port to its memory. The two sides of a dual-port displacement map count as two memories.
     virtual void join(MemoryPort& port, TableMemory& memory) { port.bind(memory); }
     virtual void join(MemoryPort& port, TableCache& cache) { port.bind(cache); }
     virtual void join(MemoryPort& port, OffChipMemory& memory) { port.bind(memory); }

@@ -24,13 +24,13 @@ void refuse(const std::string& name, const cci::cci_value& preset, const std::st
     SC_REPORT_ERROR("tessera/cci", (name + " = " + preset.to_json() + ' ' + reason).c_str());
 }
 
-/// Letters that both names have at their beginnings and ends.
+/// The number of letters that two names have in common at their beginnings and ends.
 std::ptrdiff_t letters_in_common(const std::string& a, const std::string& b) {
     return std::mismatch(a.begin(), a.end(), b.begin(), b.end()).first - a.begin() +
            (std::mismatch(a.rbegin(), a.rend(), b.rbegin(), b.rend()).first - a.rbegin());
 }
 
-/// As the table [hardware] of a job file (testbench/job) has them.
+/// Declares the keys of the table [hardware] of a job file (testbench/job).
 template <typename Keys>
 void declare_hardware(const Keys& key) {
     constexpr unsigned any_count = 2147483647;
@@ -77,7 +77,7 @@ void declare_hardware(const Keys& key) {
 template <typename Group>
 class DesignParameters::Keys {
   public:
-    /// table: of a job file, with a point, or empty.
+    /// table: the name of a job file's table with a dot, or empty.
     Keys(DesignParameters& parameters, Group& group, const std::string& table)
         : to_(parameters), group_(group), prefix_(parameters.prefix_ + table) {}
 

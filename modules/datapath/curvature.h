@@ -12,9 +12,9 @@
 
 namespace tessera::datapath {
 
-/// What the Curvature Test's table says of a square of 2^l texels a side, l its level: by how much the midpoint of an
-/// edge of 2^l texels leaves the chord, (xx u u + xy u v + yy v v) for the edge (u, v) * 2^l, and how much the map
-/// leaves that quadratic on the average. In units of 2^(exponent - curvature_fraction) codes.
+/// The Curvature Table's entry for a square with sides of 2^l texels, l its level: how far the midpoint of an edge of
+/// 2^l texels deviates from the chord, (xx u u + xy u v + yy v v) for the edge (u, v) * 2^l, and how far the map
+/// deviates from that quadratic on average. In units of 2^(exponent - curvature_fraction) codes.
 struct CurvatureEntry {
     std::uint8_t exponent = 0;            ///< 4 bits
     std::int32_t xx = 0, xy = 0, yy = 0;  ///< signed 8 bits each
@@ -71,8 +71,8 @@ constexpr int curvature_level(const TexCoord& i, const TexCoord& j, const Format
     return level;
 }
 
-/// The highest level of a table: the least at which 2^l texels hold all it covers. Longer edges read that. covered: the
-/// map, or more texels where it clamps and the base mesh reaches beyond it.
+/// The highest level of a table: the least at which 2^l texels hold all that it covers. Longer edges read this level.
+/// covered: the map, or more texels if it clamps and the base mesh extends beyond it.
 constexpr int highest_curvature_level(const MapGeometry& covered) {
     int level = least_curvature_level;
     while (std::max(covered.width, covered.height) > std::uint32_t{1} << level)
@@ -86,7 +86,7 @@ struct CurvatureCells {
     std::uint64_t first_entry = 0;  ///< entries of the lower levels, which lie before these
 };
 
-/// The number of the cell that is nearest to a texel; of two the higher.
+/// The number of the cell nearest to a texel; of two equally near the higher.
 constexpr std::uint32_t curvature_cell(std::uint32_t texel, int level) {
     return (texel + (std::uint32_t{1} << (level - 2))) >> (level - 1);
 }
@@ -102,14 +102,14 @@ constexpr CurvatureCells curvature_cells(int level, const MapGeometry& covered) 
     }
 }
 
-/// Of all levels.
+/// The number of entries of all levels.
 constexpr std::uint64_t curvature_entries(const MapGeometry& covered) {
     const CurvatureCells last = curvature_cells(highest_curvature_level(covered), covered);
     return last.first_entry + std::uint64_t{last.columns} * last.rows;
 }
 
-/// Byte address of the entry for an edge with midpoint t_ij, level >= 2: of the cell nearest to the midpoint's texel.
-/// base: of the table. The cells of each level are constants of the table.
+/// Byte address of the entry for an edge with midpoint t_ij, level >= 2: that of the cell nearest to the midpoint's
+/// texel. base: that of the table. The cells of each level are constants of the table.
 constexpr std::uint64_t curvature_address(const TexCoord& ij, int level, std::uint64_t base, const MapGeometry& covered,
                                           const Formats& formats) {
     const int read = std::min(level, highest_curvature_level(covered));
@@ -139,17 +139,17 @@ constexpr std::uint64_t curvature_measure(const CurvatureEntry& entry, const Tex
     return deviation << (entry.exponent + level);
 }
 
-/// The same at level 1, from the codes of the edge's three vertices: |2 d_ij - d_i - d_j| in 1/8 codes.
+/// The left operand at level 1, from the codes of the edge's three vertices: |2 d_ij - d_i - d_j| in 1/8 codes.
 constexpr std::uint64_t curvature_measure_of_codes(std::uint32_t i, std::uint32_t j, std::uint32_t ij) {
     return absolute_difference(2 * std::int64_t{ij}, std::int64_t{i} + j) << curvature_fraction;
 }
 
-/// Whether the test reads the three codes, and not the table.
+/// Whether the test reads the three codes instead of the table.
 constexpr bool curvature_by_codes(const TexCoord& i, const TexCoord& j, const Formats& formats) {
     return curvature_level(i, j, formats) < least_curvature_level;
 }
 
-/// Addresses of what is read for an edge: three codes, or one entry.
+/// The addresses read for an edge: those of three codes, or of one entry.
 template <class Visit>
 constexpr void curvature_reads(const TexCoord& i, const TexCoord& j, const TexCoord& ij, const Registers& r,
                                Visit&& visit) {
@@ -161,7 +161,7 @@ constexpr void curvature_reads(const TexCoord& i, const TexCoord& j, const TexCo
         visit(curvature_address(ij, level, r.height_table.base, covered_texels(r), r.formats));
 }
 
-/// The measure, of what was read.
+/// The measure, from the entries read.
 template <class Entries>
 constexpr std::uint64_t curvature_of_entries(const TexCoord& i, const TexCoord& j, const Entries& read,
                                              const Formats& formats) {

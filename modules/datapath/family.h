@@ -6,12 +6,12 @@
 
 namespace tessera::datapath {
 
-/// The edges of a triangle's children that are to be tested: with k split edges their 2 k halves and k edges inside the
-/// triangle, each once, though one inside belongs to two children; and its own edges that are open.
+/// The edges of a triangle's children to be tested: with k split edges their 2 k halves and k edges inside the
+/// triangle, each once, although an inner edge belongs to two children; and the triangle's own open edges.
 struct FamilyEdges {
     static constexpr std::uint8_t whole = 0xff;  ///< an edge of the parent that is final
     struct Ends {
-        std::uint8_t i, j;  ///< as in ChildIndices
+        std::uint8_t i, j;  ///< numbered as in ChildIndices
     };
     std::array<Ends, 9> edges{};
     unsigned count = 0;
@@ -19,13 +19,13 @@ struct FamilyEdges {
     std::array<std::array<std::uint8_t, 3>, 4> of_child{};
 };
 
-/// The triangle's own edges that are to be tested with its children's: all of a base triangle, else those that asked to
-/// be split while another was cut. Bit k: edge k.
+/// The triangle's own edges to be tested with those of its children: all edges of a base triangle, else those that
+/// requested a split while another edge was cut. Bit k: edge k.
 constexpr std::uint8_t open_edges(bool untested, std::uint8_t uncut) {
     return untested ? std::uint8_t{7} : uncut;
 }
 
-/// In the order of the children, and of each child's edges. open: of the triangle's edges (open_edges).
+/// In the order of the children, and of each child's edges. open: the triangle's open edges (open_edges).
 constexpr FamilyEdges family_edges(const ChildIndices& indices, std::uint8_t open) {
     FamilyEdges family;
     const auto number_of = [&](std::uint8_t i, std::uint8_t j) -> std::uint8_t {

@@ -52,7 +52,7 @@ class Fields {
         pass(named(name, "u", formats_.texture.bits, most, false, meaning), t.u);
         pass(named(name, "v", formats_.texture.bits, most, false, meaning), t.v);
     }
-    /// P's; with a Rank Test as the viewer sees it also D.
+    /// P's; with a view-dependent Rank Test also D.
     template <class S>
     constexpr void screen(const char* name, S& s, const char* meaning) {
         pixel(name, s, meaning);
@@ -91,13 +91,13 @@ class Fields {
         if (formats_.final_edges)
             number(name, value, 3, meaning);
     }
-    /// Only in a machine of families.
+    /// Only in the family design.
     template <class N>
     constexpr void split_edges(const char* name, N& value, const char* meaning) {
         if (formats_.families)
             number(name, value, 3, meaning);
     }
-    /// Only in a machine of families with a Rank Test.
+    /// Only in the family design with a Rank Test.
     template <class N>
     constexpr void uncut_edges(const char* name, N& value, const char* meaning) {
         if (formats_.families && formats_.height_test == HeightTest::rank)
@@ -109,7 +109,7 @@ class Fields {
         if (formats_.height_test == HeightTest::rank)
             pass(named(name, "", ordering_bits(formats_), 16, false, meaning), value);
     }
-    /// Only with a Rank Test as the viewer sees it.
+    /// Only with a view-dependent Rank Test.
     template <class N>
     constexpr void edge_in_view(const char* name, N& ends, const char* meaning) {
         if (!formats_.distances)

@@ -3,7 +3,7 @@
 
 namespace tessera::datapath {
 
-/// A fixed-point format: `bits` in all, the lowest `fraction` of them behind the binary point.
+/// A fixed-point format: `bits` in all, the lowest `fraction` of them after the binary point.
 ///
 /// The model holds values in wider integers; `lowest` and `highest` are the limits of the wires. Widths are run-time
 /// configuration, so that they can be explored.
@@ -21,7 +21,7 @@ struct Format {
     }
 };
 
-/// The test of heights a machine has, on a table of its own. The paper's is `summed_height`.
+/// The height test of a design, which has its own table. The paper's is `summed_height`.
 enum class HeightTest : std::uint8_t { summed_height, rank, curvature, mipmap };
 
 /// How the displacement map and the normal map are read at t (bilinear.h).
@@ -45,13 +45,13 @@ struct Formats {
     Format screen = Format::make_signed(24, 8);           ///< P's in pixels
     int generation_bits = 4;
     bool highlight_tag = false;  ///< with a Highlight Test: split_by in a queue entry has a bit for it
-    bool final_edges = false;    ///< a queue entry says which of its edges are final
+    bool final_edges = false;    ///< a queue entry marks its final edges
     bool codes = false;          ///< a vertex carries its displacement code
     HeightTest height_test = HeightTest::summed_height;
     int rank_bits = 8;       ///< of an entry of the Rank Table; 0: none
     int bound_bits = 0;      ///< likewise; the bound lies above the rank
-    bool distances = false;  ///< a Rank Test as the viewer sees it: a vertex carries its distance from the eye
-    bool families = false;   ///< a queue entry says which edges split, and N, T, N' of their midpoints
+    bool distances = false;  ///< view-dependent Rank Test: a vertex carries its distance from the eye
+    bool families = false;   ///< family design: a queue entry has its split edges, and N, T, N' of their midpoints
     MapFilter filter = MapFilter::nearest;
     int tex_coord_fraction = 0;  ///< fraction bits of t that the Tex Coord Test compares, at most the texture's
 };
@@ -73,7 +73,7 @@ constexpr int height_entry_bits(const Formats& formats) {
     return formats.summed_height.bits;
 }
 
-/// Whether short edges' heights are read of the displacement map, in place of the test's table.
+/// Whether heights of short edges are read from the displacement map instead of the test's table.
 constexpr bool height_test_reads_codes(const Formats& formats) {
     return formats.codes || formats.height_test == HeightTest::curvature;
 }
@@ -83,7 +83,7 @@ constexpr bool covers_more_than_the_map(const Formats& formats) {
     return formats.height_test == HeightTest::rank || formats.height_test == HeightTest::curvature;
 }
 
-/// Bits of the number by which the cut `greatest_rank` compares edges: of the rank or, without ranks, of the bound.
+/// Bits of the number by which the `greatest_rank` cut compares edges: the rank or, without ranks, the bound.
 constexpr int ordering_bits(const Formats& formats) {
     return formats.rank_bits > 0 ? formats.rank_bits : formats.bound_bits;
 }

@@ -12,8 +12,8 @@
 
 namespace tessera::datapath {
 
-/// The Mipmap Test compares three heights of the map filtered down to an edge's length, as the Summed Height Test
-/// compares three sums: what the paper (2.3.1) weighs its test against, with means (Williams 1983) or maxima.
+/// The Mipmap Test compares three heights of the map filtered to an edge's length, as the Summed Height Test compares
+/// three sums: the alternative named in the paper (2.3.1), with means (Williams 1983) or maxima.
 struct MipmapWidths : Intermediates {
     using Intermediates::Intermediates;
     Width difference{"abs(du), abs(dv)", f.texture.bits};
@@ -47,7 +47,7 @@ constexpr int highest_mipmap_level(const MapGeometry& map) {
     return level;
 }
 
-/// Of all levels.
+/// The number of entries of all levels.
 constexpr std::uint64_t mipmap_entries(const MapGeometry& map) {
     return mipmap_blocks(highest_mipmap_level(map), map).first_entry + 1;
 }
@@ -63,7 +63,7 @@ constexpr int mipmap_level(const TexCoord& i, const TexCoord& j, const MapGeomet
     return level;
 }
 
-/// Byte address of the block that holds the texel under t; base: of the table.
+/// Byte address of the block that holds the texel under t; base: that of the table.
 constexpr std::uint64_t mipmap_address(const TexCoord& t, int level, std::uint64_t base, const MapGeometry& map,
                                        const Formats& formats) {
     const MipmapBlocks blocks = mipmap_blocks(level, map);
@@ -73,7 +73,7 @@ constexpr std::uint64_t mipmap_address(const TexCoord& t, int level, std::uint64
     return base + entry * entry_bytes(formats.displacement.bits);
 }
 
-/// Addresses of the three entries that are read for an edge: of its ends, then of its midpoint.
+/// Addresses of the three entries read for an edge: for its ends, then for its midpoint.
 template <class Visit>
 constexpr void mipmap_reads(const TexCoord& i, const TexCoord& j, const TexCoord& ij, const Registers& r,
                             Visit&& visit) {
@@ -82,7 +82,7 @@ constexpr void mipmap_reads(const TexCoord& i, const TexCoord& j, const TexCoord
         visit(mipmap_address(t, level, r.height_table.base, r.map, r.formats));
 }
 
-/// |2 M_ij - M_i - M_j|, of these entries: twice the height by which the midpoint leaves the chord.
+/// |2 M_ij - M_i - M_j|, from these entries: twice the height by which the midpoint deviates from the chord.
 template <class Entries>
 constexpr std::uint64_t mipmap_difference(const Entries& read) {
     return absolute_difference(static_cast<std::int64_t>(2 * read[2]), static_cast<std::int64_t>(read[0] + read[1]));

@@ -21,7 +21,7 @@ struct TableLayout {
     constexpr std::uint64_t bytes() const { return std::uint64_t{rows} * columns * entry_bytes; }
 };
 
-/// What a table covers, from texel (0, 0) on: the map, or more where it clamps and the base mesh reaches beyond it.
+/// The texels that a table covers, from (0, 0) on: the map, or more if it clamps and the base mesh extends beyond it.
 struct CoveredTexels {
     std::uint32_t columns = 0;
     std::uint32_t rows = 0;
@@ -40,7 +40,7 @@ enum class SummedHeightUnit : std::uint8_t { sum, area };
 /// The thresholds and switches of the edge tests, set by the mesh's author (paper 2.2 to 2.4).
 struct TestParameters {
     bool normal_test = true;         ///< if switched off, NT, SHT, HT count as false; VT, TCT, GT as true
-    bool summed_height_test = true;  ///< or the test that stands in its place (Formats::height_test)
+    bool summed_height_test = true;  ///< or the test in its place (Formats::height_test)
     bool view_test = true;
     bool tex_coord_test = true;
     bool generation_test = true;
@@ -84,8 +84,8 @@ struct TransformParameters {
     std::array<std::array<std::int32_t, 3>, 3> normal_rows{};  ///< world to view rotation, normal's format
 };
 
-/// How a triangle is cut whose edges split: all of them, the quadrilateral that remains of two along the diagonal named;
-/// or with a Rank Test the edge of greatest rank alone (rank.h).
+/// The triangulation of a triangle whose edges split: all of them are cut, and a quadrilateral that remains along the
+/// given diagonal; or, with a Rank Test, only the edge of greatest rank is cut (rank.h).
 enum class Triangulation : std::uint8_t { shorter, first, second, greatest_rank };
 
 /// Direction towards the light in screen space (normal's format), and ambient light, 0..256.
@@ -101,7 +101,7 @@ struct Registers {
     TableLayout displacement_map;
     TableLayout normal_map;
     TableLayout height_table;  ///< of the height test: the Summed Height Table, unless Formats say otherwise
-    CoveredTexels covered;     ///< by a height test's table that may reach beyond the map
+    CoveredTexels covered;     ///< by a height test's table that may extend beyond the map
     TestParameters tests;
     DisplacementParameters displacement;
     TransformParameters transform;
@@ -110,7 +110,7 @@ struct Registers {
     LightParameters light;
 };
 
-/// What the height test's table covers, read as the map is.
+/// The texels that the height test's table covers, addressed like the map.
 constexpr MapGeometry covered_texels(const Registers& r) {
     return {r.covered.columns, r.covered.rows, r.map.address_u, r.map.address_v};
 }

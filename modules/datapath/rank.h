@@ -24,21 +24,21 @@ constexpr std::uint32_t texture_length(const TexCoord& i, const TexCoord& j) {
     return (i.u > j.u ? i.u - j.u : j.u - i.u) + (i.v > j.v ? i.v - j.v : j.v - i.v);
 }
 
-/// Whether the edge's midpoint is a point of the lattice its ends lie on: |du| and |dv| are even numbers of texels. Ends
-/// the recursion, since an edge of odd length is never split.
+/// Whether the edge's midpoint is a point of the lattice its ends lie on: |du| and |dv| are even numbers of texels.
+/// Ends the recursion, since an edge of odd length is never split.
 constexpr bool has_lattice_midpoint(const TexCoord& i, const TexCoord& j, const Formats& formats) {
     const std::uint32_t below_two_texels = (2u << formats.texture.fraction) - 1;
     return (((i.u - j.u) | (i.v - j.v)) & below_two_texels) == 0 && !(i == j);
 }
 
-/// Byte address of a midpoint's entry: one a texel. Beyond the table as beyond the map.
+/// Byte address of a midpoint's entry, of which there is one per texel. Beyond the table addressed as beyond the map.
 constexpr std::uint64_t rank_address(const TexCoord& t_ij, const TableLayout& table, const MapGeometry& map,
                                      const Formats& formats) {
     return table.address(texel_index(integer_part(t_ij.u, formats), table.columns, map.address_u),
                          texel_index(integer_part(t_ij.v, formats), table.rows, map.address_v));
 }
 
-/// What leaving a midpoint out costs, on logarithmic scales that the host chooses.
+/// The error caused by omitting a midpoint, on logarithmic scales that the host chooses.
 struct RankEntry {
     std::uint32_t rank = 0;    ///< squared error
     std::uint32_t bound = 0;   ///< largest error
@@ -55,20 +55,20 @@ constexpr RankEntry rank_entry(std::uint64_t bits, const Formats& formats) {
             field(above, height_entry_bits(formats) - above)};
 }
 
-/// RT: the rank is above its threshold, or the bound above its own. What a design's entries lack is 0 and never is.
+/// RT: the rank or the bound is above its threshold. A field that a design's entries lack is 0 and never above it.
 constexpr bool rank_test(const RankEntry& entry, const TestParameters& parameters) {
     const std::int64_t rank = entry.rank, bound = entry.bound;
     return rank > parameters.rank_threshold || bound > parameters.bound_threshold;
 }
 
-/// By which edges of a triangle are compared.
+/// The number by which the edges of a triangle are compared.
 constexpr std::uint16_t ordering_rank(const RankEntry& entry, const Formats& formats) {
     return static_cast<std::uint16_t>(formats.rank_bits > 0 ? entry.rank : entry.bound);
 }
 
-/// The cut `greatest_rank`: of the edges that ask to be split (bit k: edge k) the one of greatest rank; of equal ones the
-/// longer, then the first. The others are whole, and are tested again as edges of a child.
-/// ranks: of the edges' midpoints. lengths: texture_length.
+/// The `greatest_rank` cut: of the edges that request a split (bit k: edge k) the one of greatest rank; of equal ones
+/// the longer, then the first. The others stay whole, and are tested again as edges of a child. ranks: those of the
+/// edges' midpoints. lengths: texture_length.
 constexpr unsigned edge_of_greatest_rank(unsigned asked, const std::array<std::uint16_t, 3>& ranks,
                                          const std::array<std::uint32_t, 3>& lengths) {
     unsigned cut = 0;
@@ -84,7 +84,7 @@ constexpr unsigned edge_of_greatest_rank(unsigned asked, const std::array<std::u
     return cut;
 }
 
-/// The edges of a pass that are split: those that ask, or with `greatest_rank` one of them.
+/// The edges of a pass that are split: those that request it, or with `greatest_rank` one of them.
 template <class Pass>
 constexpr unsigned edges_to_split(unsigned asked, Triangulation choice, const Pass& pass) {
     if (choice != Triangulation::greatest_rank)

@@ -13,7 +13,7 @@ namespace tessera::datapath {
 
 /// Fraction bits of a distance's logarithm.
 inline constexpr int level_fraction = 12;
-/// Bits of the eye's coordinates, which may lie far beyond the position's range, and of the thresholds at distance 1.
+/// Bits of the eye's coordinates, which may be far beyond the position's range, and of the thresholds at distance 1.
 inline constexpr int eye_bits = 40, rank_limit_bits = 19, bound_limit_bits = 18;
 
 struct RankViewWidths : Intermediates {
@@ -35,9 +35,10 @@ struct RankViewWidths : Intermediates {
 };
 static_assert(fits_every_format<RankViewWidths>());
 
-/// How far P' is from the eye, in the view distance's format, rounded down: the norm
+/// The distance of P' from the eye, in the view distance's format, rounded down: the norm
 ///     max(|x|, |y|, |z|, 11/16 of the greatest sum of two of them, 9/16 of their sum),
-/// 0.873 to 1 of the Euclidean length, whichever way the camera looks. Saturates, not counted: farther is as far.
+/// 0.873 to 1 times the Euclidean length, independent of the viewing direction. Saturates at the greatest distance, not
+/// counted.
 constexpr std::uint32_t eye_distance(const Position& p, const TransformParameters& parameters, const Formats& formats) {
     const auto away = [](std::int64_t a, std::int64_t b) { return static_cast<std::uint64_t>(a > b ? a - b : b - a); };
     const std::uint64_t x = away(p.x, parameters.eye[0]), y = away(p.y, parameters.eye[1]);
@@ -49,7 +50,7 @@ constexpr std::uint32_t eye_distance(const Position& p, const TransformParameter
     return static_cast<std::uint32_t>(std::min(norm >> down, farthest));
 }
 
-/// log2 of a distance with 12 fraction bits, straight between powers of two and rounded down: at most 0.0864 below.
+/// log2 of a distance with 12 fraction bits, linear between powers of two and rounded down: at most 0.0864 too small.
 /// 0 counts as 1. A leading-zero count and the 12 bits after the leading one.
 constexpr std::uint32_t distance_level(std::uint64_t distance) {
     if (distance == 0)
@@ -59,7 +60,7 @@ constexpr std::uint32_t distance_level(std::uint64_t distance) {
     return octave << level_fraction | static_cast<std::uint32_t>(behind >> (64 - level_fraction));
 }
 
-/// An edge as the Rank Test sees it: the sums of its ends' distances and depths.
+/// The view of an edge for the Rank Test: the sums of its ends' distances and depths.
 struct EdgeInView {
     std::uint64_t distance = 0;  ///< D_i + D_j
     std::int64_t depth = 0;      ///< w_i + w_j
@@ -69,16 +70,17 @@ constexpr EdgeInView edge_in_view(const ScreenPosition& i, const ScreenPosition&
     return {std::uint64_t{i.distance} + j.distance, std::int64_t{i.w} + j.w};
 }
 
-/// The radius that a table holds: 3 bits behind a leading one, and above them the exponent. In LSB of D_i + D_j.
+/// The radius encoded in a table entry: 3 bits after a leading one, and above them the exponent. In LSB of D_i + D_j.
 constexpr std::uint64_t midpoint_radius(std::uint32_t code) {
     return std::uint64_t{8 + (code & 7)} << (code >> 3);
 }
 
-/// RT as the viewer sees it: both thresholds rise with the distance of the edge's ends, D_i + D_j. A rank is a squared
-/// error, and its threshold rises by two octaves for one of distance; by four where errors count per pixel that the
-/// triangles cover, not per point. That of a bound rises by one, and with the least distance in the midpoint's sphere: if
-/// the eye is in it the edge asks, if all of it lies behind the viewer it does not. Both sides on scales of 16 bits,
-/// whatever an entry's width: of a rank 10 bits are behind the point, of a bound 11. An entry of 0 never asks.
+/// View-dependent RT: both thresholds rise with the distance of the edge's ends, D_i + D_j. A rank is a squared error;
+/// its threshold rises by two octaves per octave of distance, or by four if errors are weighted per covered pixel
+/// instead of per point. The threshold of a bound rises by one, with the least distance in the midpoint's sphere: if
+/// the eye is in the sphere the edge requests a split; if all of the sphere is behind the viewer it does not. Both
+/// sides are on scales of 16 bits for any entry width: a rank has 10 bits after the point, a bound 11. An entry of 0
+/// never requests a split.
 constexpr bool rank_test_in_view(const RankEntry& entry, const EdgeInView& ends, const TestParameters& parameters,
                                  const Formats& formats) {
     const auto level = static_cast<std::int64_t>(distance_level(ends.distance));
@@ -95,7 +97,7 @@ constexpr bool rank_test_in_view(const RankEntry& entry, const EdgeInView& ends,
     return bound > parameters.bound_threshold + nearest;
 }
 
-/// RT, in either kind of design.
+/// RT, view-dependent or not.
 constexpr bool asks_by_rank(const RankEntry& entry, const EdgeInView& ends, const TestParameters& parameters,
                             const Formats& formats) {
     return formats.distances ? rank_test_in_view(entry, ends, parameters, formats) : rank_test(entry, parameters);

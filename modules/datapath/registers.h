@@ -24,9 +24,9 @@ struct Register {
     const char* meaning;
 };
 
-/// The table of registers: calls visit(Register, its value...) for each, once for a group of similar ones. The values are
-/// references to the members of `r`, which may be assigned unless it is constant.
-/// Formats and the size of table entries are fixed in a design; a table's columns and rows follow from the map's size.
+/// The table of registers: calls visit(Register, its value...) for each, once for a group of similar ones. The values
+/// are references to the members of `r`, which may be assigned unless it is constant. Formats and the size of table
+/// entries are fixed in a design; a table's columns and rows follow from the map's size.
 template <class AnyRegisters, class Visit>
 constexpr void describe_registers(AnyRegisters& r, Visit&& visit) {
     const Formats f = r.formats;
@@ -123,7 +123,7 @@ constexpr void describe_registers(AnyRegisters& r, Visit&& visit) {
               r.tests.mipmap_threshold);
 }
 
-/// The same with the values of a group as a std::array of std::int64_t.
+/// Does the same, with the values of a group as a std::array of std::int64_t.
 template <class Visit>
 constexpr void visit_registers(const Registers& registers, Visit&& visit) {
     describe_registers(registers, [&](const Register& field, const auto&... values) {

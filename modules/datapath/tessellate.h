@@ -14,8 +14,8 @@ constexpr std::uint8_t kept_generation(std::uint8_t generation, const Formats& f
 }
 
 /// A child's final edges: an edge between two corners of its parent is an edge of the parent. It is final unless it
-/// asked to be split, and another was cut in its stead.
-/// `corners`: of the child, as triangulate() gives them.
+/// requested a split and another edge was cut instead.
+/// `corners`: those of the child, as returned by triangulate().
 constexpr std::uint8_t final_edges_of(const std::array<std::uint8_t, 3>& corners, unsigned asked) {
     unsigned edges = 0;
     for (unsigned k = 0; k < 3; ++k)

@@ -28,16 +28,16 @@ struct EdgeTests {
     Direction displaced_normal;  ///< N'_ij   (Normal Test)
     std::uint8_t tests = 0;      ///< TestBits
     std::uint8_t evaluated = 0;  ///< TestBits: the tests that were evaluated; 0: the edge is final and was not tested
-    std::uint16_t rank = 0;      ///< of its midpoint, with a Rank Test
+    std::uint16_t rank = 0;      ///< rank of its midpoint, with a Rank Test
 };
 
-/// What is told of a pass. In a machine of families the edges are tested before the midpoints are made.
+/// The information reported about a pass. In the family design edges are tested before their midpoints are made.
 enum class Told : std::uint8_t { all, tests, midpoints };
 
 /// One pass of one triangle through the machine, joined by Pass or Tessellate from the triangle and its parts. Edge k
 /// runs from vertex k to vertex (k + 1) mod 3.
 struct TrianglePass {
-    std::uint32_t number = 0;  ///< the model's name of the pass
+    std::uint32_t number = 0;  ///< the model's number for the pass
     Triangle triangle;
     std::uint8_t new_vertices = 0;  ///< bit k: vertex k has no P', P's, N' yet (a base triangle's first pass)
     std::uint8_t new_normals = 0;   ///< bit k: vertex k has N' but not yet N's
@@ -46,7 +46,7 @@ struct TrianglePass {
     std::array<EdgeTests, 3> edges;
     std::uint8_t split = 0;  ///< bit k: edge k is split (Pass or Tessellate)
     Told told = Told::all;
-    std::uint8_t shared = 0;  ///< bit k: edge k was tested once for this and for a sibling told before
+    std::uint8_t shared = 0;  ///< bit k: edge k was tested once for this and for a sibling reported before
 
     constexpr const Vertex& edge_begin(int k) const { return triangle.vertices[static_cast<std::size_t>(k)]; }
     constexpr const Vertex& edge_end(int k) const {
@@ -54,8 +54,8 @@ struct TrianglePass {
     }
 };
 
-/// The vertex inserted on edge k, from the results of both branches. Without families N's is calculated on its next
-/// pass.
+/// The vertex inserted on edge k, from the results of both branches. In the triangle design N's is calculated on its
+/// next pass.
 constexpr Vertex inserted_vertex(const TrianglePass& pass, int k) {
     const Vertex& i = pass.edge_begin(k);
     const Vertex& j = pass.edge_end(k);

@@ -31,13 +31,13 @@ struct TexCoord {
 struct ScreenPosition {
     std::int32_t x = 0, y = 0, w = 0;
     bool in_front = false;
-    std::uint32_t distance = 0;  ///< D, from the eye, whichever way it looks; 0 unless Formats::distances
+    std::uint32_t distance = 0;  ///< D, from the eye, in any direction; 0 unless Formats::distances
     friend constexpr bool operator==(const ScreenPosition& a, const ScreenPosition& b) {
         return a.x == b.x && a.y == b.y && a.w == b.w && a.in_front == b.in_front && a.distance == b.distance;
     }
 };
 
-/// All a vertex carries through the machine (paper 3.1.5, golden/ALGORITHM.md 1).
+/// All values that a vertex carries through the machine (paper 3.1.5, golden/ALGORITHM.md 1).
 struct Vertex {
     Position position;           ///< P, on the base surface
     Direction normal;            ///< N, of the base surface
@@ -69,7 +69,7 @@ constexpr std::uint8_t requesting_tests = normal_bit | summed_height_bit | highl
 constexpr std::uint8_t gating_tests = view_bit | tex_coord_bit | generation_bit;
 constexpr std::uint8_t all_tests = requesting_tests | gating_tests;
 
-/// What the tests found of an edge that is to be split.
+/// The tests' results for the midpoint of an edge that will be split.
 struct TestedMidpoint {
     Direction normal;            ///< N_ij
     Direction tangent;           ///< T_ij
@@ -79,18 +79,18 @@ struct TestedMidpoint {
 /// A triangle in the Triangle Queue. Edge k runs from vertex k to vertex (k + 1) mod 3.
 struct Triangle {
     std::array<Vertex, 3> vertices;
-    std::uint32_t base = 0;     ///< index of the base triangle it descends from: a tag without effect
+    std::uint32_t base = 0;     ///< index of the base triangle it descends from: for information only
     std::uint8_t split_by = 0;  ///< NT, SHT and HT bits of the parent's split edges; 0: a base triangle
     /// VT, TCT, GT bits: the tests that prevented a split requested by NT, SHT or HT.
     std::uint8_t stopped_by = 0;
     bool finished = false;  ///< no edge splits; one more pass calculates its normals in screen space
-    /// Bit k: edge k was tested with the parent and not split; so it never will be. 0 unless Formats::final_edges.
+    /// Bit k: edge k was tested with the parent and not split, so it never will be. 0 unless Formats::final_edges.
     std::uint8_t final_edges = 0;
-    std::uint32_t parent = 0;  ///< the pass in which its parent was split: a tag without effect
-    /// Formats::families: a triangle in the queue is to be split; split_by and parent are those of its children.
+    std::uint32_t parent = 0;  ///< the pass in which its parent was split: for information only
+    /// Formats::families: a triangle in the queue will be split; split_by and parent are those of its children.
     std::uint8_t split = 0;  ///< bit k: edge k
     std::array<TestedMidpoint, 3> midpoints{};
-    /// With a Rank Test, of families. Bit k: edge k asked to be split, but another was cut; it is tested again.
+    /// Family design with a Rank Test. Bit k: edge k requested a split, but another was cut; it is tested again.
     std::uint8_t uncut = 0;
 };
 

@@ -9,7 +9,7 @@ namespace tessera {
 
 namespace {
 
-/// Registers for the largest map, from which the table memories take their capacities.
+/// Registers for the largest map, which determine the capacities of the table memories.
 datapath::Registers for_largest_map(datapath::Registers registers, const LargestMap& largest) {
     registers.map.width = largest.width;
     registers.map.height = largest.height;
@@ -23,7 +23,7 @@ void require(bool condition, const char* instance, const char* rule) {
         SC_REPORT_ERROR("tessera/device", (std::string(instance) + ": " + rule).c_str());
 }
 
-/// Before anything is built from it.
+/// Checks the design before anything is built from it.
 const DeviceDesign& checked(const DeviceDesign& design, const datapath::Registers& initial, const char* instance) {
     const std::uint64_t most_texels = std::uint64_t{1}
                                       << (initial.formats.texture.bits - 1 - initial.formats.texture.fraction);
@@ -101,7 +101,7 @@ void Device::run_frames() {
     }
 }
 
-/// False: the frame is to stop.
+/// Returns false if the frame must stop.
 bool Device::fetch_tables() {
     const datapath::Formats& f = live_.formats;
     return fetch(0, displacement_map_, offset::displacement_map_address, live_.displacement_map, f.displacement.bits) &&
@@ -110,7 +110,7 @@ bool Device::fetch_tables() {
                  datapath::height_entry_bits(f));
 }
 
-/// Burst by burst, into the table memory by its debug transport. The memory has no more than `bits` bits of an entry.
+/// Copies burst by burst into the table memory by its debug transport. The memory keeps only `bits` bits of an entry.
 bool Device::fetch(unsigned number, TableSocket& table, std::uint32_t source, const datapath::TableLayout& layout,
                    int bits) {
     if ((file_.value(offset::fetch) >> number & 1) == 0)
@@ -178,8 +178,8 @@ void Device::end_frame() {
     raise(done ? interrupt_done : interrupt_error);
 }
 
-/// The first error counts. No edge is split from now on, so that the machine is empty soon: what the software set may
-/// split without end.
+/// The first error is kept. No edge is split from now on, so that the machine empties soon: the software's settings
+/// might otherwise split without end.
 void Device::stop(DeviceError error, std::uint64_t address) {
     if (!stopped_)
         failure_ = {error, address};
@@ -190,8 +190,9 @@ void Device::stop(DeviceError error, std::uint64_t address) {
     stop_.notify(sc_core::SC_ZERO_TIME);
 }
 
-/// The machine has decided a triangle. Those that wait are counted with the children of all that are under way, which
-/// can still be added when splitting ends: the queue would halt the machine for good if its memory were full.
+/// The machine has decided a triangle. Waiting triangles are counted together with the children of all triangles under
+/// way, which can still be added when splitting ends: the queue would halt the machine for good if its memory were
+/// full.
 void Device::write(const datapath::TrianglePass&) {
     if (stopped_)
         return;
@@ -264,7 +265,7 @@ void Device::reset_registers() {
 
 void Device::reset_changed() {
     if (reset.size() == 0)
-        return;  // without static sensitivity: never called again
+        return;  // no static sensitivity: never called again
     next_trigger(reset->value_changed_event());
     if (reset_held())
         begin_reset();
@@ -275,7 +276,7 @@ void Device::raise(std::uint32_t interrupt_bits) {
     interrupt_changed_.notify(sc_core::SC_ZERO_TIME);
 }
 
-/// One process drives the signal, whoever changes the registers.
+/// A single process drives the signal for all changes of the registers.
 void Device::drive_interrupt() {
     if (interrupt.size() > 0)
         interrupt->write((pending_interrupts_ & file_.value(offset::interrupt_enable)) != 0);

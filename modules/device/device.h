@@ -12,45 +12,44 @@
 
 namespace tessera {
 
-/// What is built around the machine.
+/// The parameters of a device: the machine, and what is built around it.
 struct DeviceDesign {
     Design machine;                   ///< its queue must spill, or be unbounded
-    LargestMap largest_map;           ///< sizes the table memories; a Rank Table's columns and rows are within it too
-    unsigned register_cycles = 1;     ///< of the machine's clock, for each word of a register access
+    LargestMap largest_map;           ///< sizes the table memories; also limits a Rank Table's columns and rows
+    unsigned register_cycles = 1;     ///< cycles of the machine's clock for each word of a register access
     unsigned burst_bytes = 64;        ///< of a DMA transfer: a power of two, 4 to 4096
-    unsigned triangles_ahead = 4;     ///< base triangles fetched before Get Triangle takes them (timed mode)
-    unsigned finished_triangles = 8;  ///< that wait to be written
+    unsigned triangles_ahead = 4;     ///< base triangles fetched before Get Triangle accepts them (timed mode)
+    unsigned finished_triangles = 8;  ///< finished triangles that wait to be written
 };
 
 /// The machine (pipeline.h) as a device on a bus: registers, DMA, interrupt.
 ///
-/// In:        `registers`: TLM-2.0 base protocol, loosely timed (b_transport) and approximately timed (nb_transport). Words
-///            of 32 bits, little endian, at the offsets of REGISTERS.md. An access is of one or more whole words, aligned;
-///            without byte enables. It takes effect as a whole, in ascending order, or not at all:
+/// In:        `registers`: TLM-2.0 base protocol, loosely timed (b_transport) and approximately timed (nb_transport).
+///            Words of 32 bits, little endian, at the offsets of REGISTERS.md. An access is of one or more whole words,
+///            aligned; without byte enables. It takes effect as a whole, in ascending order, or not at all:
 ///            TLM_BURST_ERROR: not whole aligned words, or a streaming width below the length. TLM_BYTE_ENABLE_ERROR.
 ///            TLM_ADDRESS_ERROR: no register there. TLM_COMMAND_ERROR: a write to a read-only register, or neither read
-///            nor write. TLM_GENERIC_ERROR: a write that is refused now (a frame is under way, reset is held, or the read
-///            index would pass the write index).
-///            transport_dbg: reads, and writes of plain registers, without side effects. DMI: refused.
-///            `reset`: optional; while high the device is in reset.
-/// Out:       `bus`: base protocol, b_transport with annotated delay; two transfers may be under way at a time, one reading
-///            and one writing. `interrupt`: optional; level.
-/// Frame:     start validates all registers, copies the tables that `fetch` names into the table memories, which
-///            drop bits of an entry that its format does not have, sends the base
-///            triangles to the machine, and writes each finished triangle that is not culled to the ring (records.h). done
-///            and interrupt follow when all are written. While the ring is full (write index - read index = size) the
-///            machine is held back. Indices and counters begin at 0 with each frame.
-/// Errors:    software's end in `error`, and interrupt. A refused frame changes nothing else. A stopped one goes on until
-///            the machine is empty; its finished triangles are dropped, and no record is begun.
-/// Reset:     stops a frame likewise. The machine's units have no reset wires: what is in the machine goes through it, with
-///            a Generation Test that splits no further edge. busy and resetting stay until it is empty; then all registers
-///            have their reset values. The tables' contents stay.
-/// Timing:    an access takes `register_cycles` for each word. While a frame is under way an access first waits its
-///            initiator's delay out. DMA: dma_channel.h. Functional mode keeps to the global quantum; timed mode
-///            waits each burst's delay out.
-/// Capacity:  `triangles_ahead` and `finished_triangles`. Of triangles that wait, or can be added by those under way, as
-///            many as the Triangle Queue or its off-chip memory holds, whichever holds more (unbounded queue: as many as
-///            off-chip memory). Beyond that the frame is stopped.
+///            nor write. TLM_GENERIC_ERROR: a write refused at present (a frame is under way, reset is held, or the
+///            read index would pass the write index). transport_dbg: reads, and writes of plain registers, without side
+///            effects. DMI: refused. `reset`: optional; while high the device is in reset.
+/// Out:       `bus`: base protocol, b_transport with annotated delay; two transfers may be under way at a time, one
+///            reading and one writing. `interrupt`: optional; level.
+/// Frame:     start validates all registers, copies the tables selected by `fetch` into the table memories (entry bits
+///            beyond the format are dropped), sends the base triangles to the machine, and writes each finished
+///            triangle that is not culled to the ring (records.h). done and interrupt follow when all are written.
+///            While the ring is full (write index - read index = size) the machine is held back. Each frame resets
+///            indices and counters.
+/// Errors:    software errors set `error` and interrupt. A refused frame changes nothing else. A stopped frame
+///            continues until the machine is empty; its finished triangles are dropped, and no record is begun.
+/// Reset:     stops a frame in the same way. The machine's units have no reset wires: the triangles in the machine go
+///            through it, with a Generation Test that splits no further edge. busy and resetting stay set until it is
+///            empty; then all registers have their reset values. The tables keep their contents.
+/// Timing:    an access takes `register_cycles` for each word. While a frame is under way an access first waits for the
+///            initiator's delay to pass. DMA: dma_channel.h. Functional mode obeys the global quantum; timed mode waits
+///            for each burst's delay to pass.
+/// Capacity:  `triangles_ahead` and `finished_triangles`. Triangles that wait, or can be added by those under way: as
+///            many as the Triangle Queue or its off-chip memory holds, whichever holds more (unbounded queue: as many
+///            as off-chip memory). Beyond that the frame is stopped.
 class Device : public sc_core::sc_module, private tlm::tlm_analysis_if<datapath::TrianglePass> {
   public:
     tlm_utils::simple_target_socket<Device> registers{"registers"};
@@ -107,7 +106,7 @@ class Device : public sc_core::sc_module, private tlm::tlm_analysis_if<datapath:
     void drive_interrupt();
 
     DeviceDesign design_;
-    datapath::Registers live_;  // what the machine sees: those of the frame under way
+    datapath::Registers live_;  // the machine's registers: those of the frame under way
     Pipeline pipeline_;
     FrameStreams streams_;
     RegisterFile file_;
@@ -120,7 +119,7 @@ class Device : public sc_core::sc_module, private tlm::tlm_analysis_if<datapath:
     std::uint32_t status_ = 0;
     std::uint32_t pending_interrupts_ = 0;
     Failure failure_;
-    bool stopped_ = false;           // the frame is to end early
+    bool stopped_ = false;           // the frame ends early
     bool record_under_way_ = false;  // or written ahead of simulated time
     std::uint32_t triangles_sent_ = 0;
     std::uint64_t finished_before_ = 0;  // by the machine, in earlier frames

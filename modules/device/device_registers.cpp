@@ -1,4 +1,4 @@
-// The register side of Device: accesses, and what start requires.
+// The register side of Device: accesses, and the checks at start.
 #include "modules/datapath/edge_tests.h"
 #include "modules/device/device.h"
 #include "modules/device/records.h"
@@ -7,13 +7,13 @@ namespace tessera {
 
 namespace {
 
-/// The largest threshold of the Summed Height Test, of each unit (edge_tests.h).
+/// The largest threshold of the Summed Height Test, for each unit of measure (edge_tests.h).
 constexpr std::uint64_t most_height_sum = std::uint64_t{1} << (datapath::summed_height_threshold_bits - 1);
 constexpr std::uint64_t most_height = std::uint64_t{1} << 18;
 
 constexpr std::int32_t most_ambient = 256;
 
-/// Lies at multiples of 4, and ends at 2^64 at the latest.
+/// Whether a transfer begins and ends at multiples of 4, and ends at 2^64 at the latest.
 bool is_transfer(std::uint64_t address, std::uint64_t bytes) {
     return bytes == 0 || (address % 4 == 0 && address + (bytes - 1) >= address);
 }
@@ -63,7 +63,7 @@ tlm::tlm_response_status Device::access(tlm::tlm_generic_payload& payload, const
     return tlm::TLM_OK_RESPONSE;
 }
 
-/// TLM_OK_RESPONSE, or why not.
+/// TLM_OK_RESPONSE, or the reason for refusing the write.
 tlm::tlm_response_status Device::may_write(std::uint64_t offset, std::uint32_t word) const {
     const DeviceRegister& field = *file_.find(offset);
     if (field.access == RegisterAccess::read_only)

@@ -10,9 +10,9 @@ namespace tessera {
 
 /// A thread's transfers over the device's bus master socket.
 ///
-/// Bursts: of at most `burst_bytes`, none across a multiple of it; one at a time.
+/// Bursts: at most `burst_bytes` long, none across a multiple of it; one at a time.
 /// Timing: the delays that the bus annotates. Loosely timed, the thread runs ahead of simulated time by at most the
-///         global quantum; otherwise it waits each burst's delay out.
+///         global quantum; otherwise it waits for each burst's delay to pass.
 class DmaChannel {
   public:
     using Socket = tlm::tlm_base_initiator_socket<32>;
@@ -21,7 +21,7 @@ class DmaChannel {
     DmaChannel(Socket& bus, unsigned burst_bytes, bool loosely_timed)
         : bus_(bus), burst_bytes_(burst_bytes), loosely_timed_(loosely_timed) {}
 
-    /// False: a response other than OK, to the burst at failed_at(); no further one was sent.
+    /// Returns false after a response other than OK to the burst at failed_at(); no further burst is sent.
     bool read(std::uint64_t address, unsigned char* to, std::uint64_t bytes) {
         return transfer(tlm::TLM_READ_COMMAND, address, to, bytes);
     }
@@ -33,7 +33,7 @@ class DmaChannel {
     /// The thread's local time, as an offset from simulated time.
     sc_core::sc_time local_time() const { return keeper_.get_local_time(); }
     void set_local_time(const sc_core::sc_time& offset);
-    /// Waits until simulated time has reached the thread's. To be called before any wait for an event.
+    /// Waits until simulated time has reached the thread's local time. Call before any wait for an event.
     void synchronise();
 
   private:

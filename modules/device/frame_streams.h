@@ -10,12 +10,12 @@
 
 namespace tessera {
 
-/// The machine's two open streams as the device's threads see them: two queues, the same in both modes.
+/// The machine's two external streams for the device's threads: two queues, the same in both modes.
 ///
-/// In:       base triangles from a thread, lit triangles from Lighting. Out: base triangles to Get Triangle, lit triangles
-///           to a thread.
-/// Capacity: so many base triangles ahead of Get Triangle (timed mode), and so many lit triangles. When these are not
-///           taken, Lighting is held back, and with it the machine.
+/// In:       base triangles from a thread, lit triangles from Lighting. Out: base triangles to Get Triangle, lit
+///           triangles to a thread.
+/// Capacity: a number of base triangles ahead of Get Triangle (timed mode), and of lit triangles. While no lit triangle
+///           is taken, a full queue holds Lighting back, and with it the machine.
 class FrameStreams : public sc_core::sc_module, public CycleProcess {
   public:
     StreamOutput<datapath::Triangle> to_get_triangle{"to_get_triangle"};
@@ -23,26 +23,26 @@ class FrameStreams : public sc_core::sc_module, public CycleProcess {
 
     struct Finished {
         LitTriangle triangle;
-        sc_core::sc_time time;  ///< from when on it is there; functional mode: may be later than now
+        sc_core::sc_time time;  ///< from which it is available; functional mode: may be later than now
     };
 
     FrameStreams(const sc_core::sc_module_name& name, CycleScheduler& clock, const Design& design,
                  std::size_t triangles_ahead, std::size_t finished_triangles);
 
-    /// From a thread. Functional mode: on return the triangle is in the machine, and `delay` has grown. Timed mode: waits
-    /// for room, unless the clock has halted; `delay` is not used.
+    /// Call from a thread. Functional mode: on return the triangle is in the machine, and `delay` has increased. Timed
+    /// mode: waits for room, unless the clock has halted; `delay` is not used.
     void send(const datapath::Triangle& triangle, sc_core::sc_time& delay);
 
     bool has_finished() const { return !finished_.empty(); }
-    /// The first lit triangle, which goes.
+    /// Removes and returns the first lit triangle.
     Finished take();
-    /// Notified when one has come.
+    /// Notified when a lit triangle has arrived.
     const sc_core::sc_event& come() const { return come_; }
 
-    /// While set, nothing is sent, and lit triangles are dropped. Those in the queues are dropped when it is set.
+    /// While set, nothing is sent, and lit triangles are dropped. Setting it drops the triangles in the queues.
     void discard(bool discarding);
 
-    /// Nothing is in either queue or on its way between them and the machine.
+    /// True if nothing is in either queue, or on its way between them and the machine.
     bool idle() const;
 
   private:

@@ -8,7 +8,7 @@ namespace tessera {
 
 namespace {
 
-/// What follows from the design alone.
+/// Whether a register's value is determined by the design alone.
 bool is_of_the_design(const DeviceRegister& r) {
     return r.name.rfind("format.", 0) == 0 || r.name == "features" || r.name == "entry_bytes";
 }

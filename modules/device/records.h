@@ -6,12 +6,12 @@
 #include "modules/datapath/vertex.h"
 #include "modules/sockets/items.h"
 
-// Records in bus memory: 32-bit words, little endian, the same for all formats. A signed value is extended to the whole
-// word. Each list is the layout: packing, the C header and the documentation follow from it.
+// Records in bus memory: 32-bit words, little endian, the same for all formats. A signed value is sign-extended to the
+// whole word. Each list below is the layout: packing, the C header and the documentation are derived from it.
 
 namespace tessera {
 
-/// The words of a base triangle's vertex: calls word(name, value, is signed, meaning).
+/// The words of a base triangle's vertex: calls word(name, value, is signed, meaning) for each.
 template <class AnyVertex, class Word>
 constexpr void describe_base_vertex(AnyVertex& v, Word&& word) {
     word("px", v.position.x, true, "P, position's format");
@@ -61,7 +61,7 @@ class RecordWriter {
     unsigned char* next_;
 };
 
-/// Reads them. A value that does not fit its member is made to fit; `fits` is then false.
+/// Reads the words. A value that does not fit its member is made to fit; `fits` is then false.
 class RecordReader {
   public:
     explicit constexpr RecordReader(const unsigned char* bytes) : next_(bytes) {}
@@ -86,7 +86,7 @@ constexpr void write_base_triangle(const datapath::Triangle& triangle, unsigned 
         describe_base_vertex(vertex, writer);
 }
 
-/// What the machine's arithmetic relies on: every value in its format, directions at most of unit length per component.
+/// The preconditions of the machine's arithmetic: every value fits its format, and no direction component exceeds 1.0.
 constexpr bool fits_formats(const datapath::Vertex& v, const datapath::Formats& f) {
     const std::int64_t one = std::int64_t{1} << f.normal.fraction;
     const std::uint64_t most_texels = std::uint64_t{1} << (f.texture.bits - 1);
@@ -99,7 +99,7 @@ constexpr bool fits_formats(const datapath::Vertex& v, const datapath::Formats& 
     return v.texture.u <= most_texels && v.texture.v <= most_texels && (v.handedness == 1 || v.handedness == -1);
 }
 
-/// False: a value beyond its format.
+/// Returns false if a value is beyond its format.
 [[nodiscard]] constexpr bool read_base_triangle(const unsigned char* bytes, const datapath::Formats& formats,
                                                 datapath::Triangle& triangle) {
     RecordReader reader(bytes);

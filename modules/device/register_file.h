@@ -8,28 +8,28 @@
 
 namespace tessera {
 
-/// The values of the device's registers, read and written by word. What a write of control does is up to the device.
+/// The values of the device's registers, read and written by word. The device acts on writes to control.
 class RegisterFile {
   public:
-    /// reset: formats, and reset values of the machine's registers.
+    /// reset: the formats, and the reset values of the machine's registers.
     RegisterFile(const datapath::Registers& reset, const LargestMap& largest);
 
-    /// All registers get their reset values.
+    /// Sets all registers to their reset values.
     void reset();
 
-    /// Null: no register has a word there.
+    /// Returns null if no register has a word at this offset.
     const DeviceRegister* find(std::uint64_t offset) const;
     std::uint32_t word(std::uint32_t offset) const;
-    /// Stores the bits that the register has, whoever may write it.
+    /// Stores the bits that the register has, without checking write access.
     void set_word(std::uint32_t offset, std::uint32_t word);
 
     /// A whole register, zero-extended.
     std::uint64_t value(std::uint32_t offset) const { return values_[index(offset)]; }
     void set(std::uint32_t offset, std::uint64_t value) { values_[index(offset)] = value & mask(map_[index(offset)]); }
 
-    /// The machine's registers as they stand, tables laid out for the map's size.
+    /// The current values of the machine's registers, with tables laid out for the map's size.
     datapath::Registers machine() const;
-    /// Offset of a machine's register by its name.
+    /// The offset of a register of the machine, by name.
     std::uint32_t offset_of(const char* name) const;
 
   private:
@@ -41,7 +41,7 @@ class RegisterFile {
     datapath::Registers reset_;
     std::vector<DeviceRegister> map_;
     std::vector<std::uint64_t> values_;
-    std::array<int, register_bytes / 4> places_;  // of a word: the register's index, or -1
+    std::array<int, register_bytes / 4> places_;  // by word: the register's index, or -1
 };
 
 }  // namespace tessera

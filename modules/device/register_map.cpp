@@ -81,7 +81,7 @@ std::vector<DeviceRegister> control_registers(const Formats& f, const LargestMap
     };
 }
 
-/// Formats in which every register has its most bits.
+/// Registers in the formats in which each has its largest width.
 datapath::Registers widest() {
     datapath::Registers registers;
     Formats& f = registers.formats;
@@ -93,7 +93,7 @@ datapath::Registers widest() {
     return registers;
 }
 
-/// Calls visit(register, values) for each in a design of this kind; with the widest formats, for all its fields.
+/// Calls visit(register, values) for each register of a design of this kind, in the widest formats.
 template <class Visit>
 void visit_widest(datapath::HeightTest kind, bool highlight, bool distances, Visit&& visit) {
     datapath::Registers registers = widest();
@@ -110,7 +110,7 @@ bool has_register(datapath::HeightTest kind, bool highlight, bool distances, con
     return found;
 }
 
-/// The test that a register belongs to, if not every design has it; else empty. kind: of a design that has it.
+/// The test that a register belongs to; empty if every design has the register. kind: that of a design that has it.
 const char* test_of(const std::string& name, datapath::HeightTest kind) {
     if (has_register(datapath::HeightTest::summed_height, false, false, name))
         return "";
@@ -121,13 +121,13 @@ const char* test_of(const std::string& name, datapath::HeightTest kind) {
 
 struct Place {
     std::string register_name;
-    std::string name;  ///< of one value of the register
+    std::string name;  ///< name of one value of the register
     std::uint32_t offset;
     int words;
     const char* only_with;
 };
 
-/// Of the machine's registers, in any design.
+/// The places of the machine's registers, over all designs.
 std::vector<Place> machine_places() {
     std::vector<Place> places;
     std::uint32_t next = offset::machine;

@@ -15,7 +15,7 @@ enum class RegisterAccess : std::uint8_t {
     write_one_to_clear,  ///< a 1 clears the bit
 };
 
-/// A register as software sees it. Bits beyond `bits` read as 0 (of a signed register: as its sign) and are dropped when
+/// A register as software sees it. Bits beyond `bits` read as 0 (in a signed register as its sign) and are dropped when
 /// written.
 struct DeviceRegister {
     std::string name;
@@ -26,7 +26,7 @@ struct DeviceRegister {
     std::uint64_t reset;
     RegisterAccess access;
     bool while_busy;        ///< may be written while a frame is under way
-    const char* only_with;  ///< the test without which a design lacks it; empty: always there
+    const char* only_with;  ///< the register exists only in designs with this test; empty: in all designs
     std::string meaning;
 };
 
@@ -38,7 +38,7 @@ struct RegisterBit {
     const char* meaning;
 };
 
-/// Offsets of the control registers that the device itself refers to.
+/// The offsets of the control registers that the device itself uses.
 namespace offset {
 inline constexpr std::uint32_t id = 0x000, version = 0x004, control = 0x008, status = 0x00c, interrupt = 0x010,
                                interrupt_enable = 0x014, error = 0x018, error_address = 0x020, fetch = 0x028,
@@ -46,7 +46,7 @@ inline constexpr std::uint32_t id = 0x000, version = 0x004, control = 0x008, sta
                                summed_height_table_address = 0x040, triangles_address = 0x048, triangles_count = 0x050,
                                triangles_sent = 0x054, triangles_finished = 0x058, ring_address = 0x060,
                                ring_size = 0x068, ring_write_index = 0x06c, ring_read_index = 0x070;
-inline constexpr std::uint32_t machine = 0x100;  ///< from here on those of the machine
+inline constexpr std::uint32_t machine = 0x100;  ///< the first register of the machine
 }  // namespace offset
 
 inline constexpr std::uint32_t register_bytes = 0x400;  ///< the device's part of the bus's address space
@@ -78,7 +78,7 @@ inline constexpr std::array<RegisterBit, 20> register_bits{{
     {"features", "mipmap_test", 12, "a Mipmap Test there"},
 }};
 
-/// Why a frame was refused or stopped: register `error`. What `error_address` then holds stands in the meaning.
+/// The reason for refusing or stopping a frame: register `error`. The meaning states what `error_address` then holds.
 enum class DeviceError : std::uint8_t {
     none,
     bad_value,
@@ -123,9 +123,9 @@ struct LargestMap {
     std::uint32_t height = 1024;
 };
 
-/// The table of all registers, in the order of their offsets: those of control, below 0x100, then those of the machine
-/// (datapath::describe_registers), each choice in a word of its own. `reset`: the formats, and the machine's reset values.
-/// The offsets are the same in every design; widths follow from the formats.
+/// The table of all registers, in order of their offsets: control registers, below 0x100, then those of the machine
+/// (datapath::describe_registers), each choice in a word of its own. `reset`: the formats, and the machine's reset
+/// values. The offsets are the same in every design; widths follow from the formats.
 std::vector<DeviceRegister> register_map(const datapath::Registers& reset, const LargestMap& largest);
 
 }  // namespace tessera

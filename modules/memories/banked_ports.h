@@ -11,10 +11,10 @@
 
 namespace tessera {
 
-/// When a table's entries are read: its banks and their ports.
+/// The timing of a table's reads: its banks and their ports.
 ///
 /// Banks:     interleave.h.
-/// Interval:  each bank has `ports` ports; a port takes an entry's address every ceil(entry bytes / width) cycles.
+/// Interval:  each bank has `ports` ports; a port accepts an entry's address every ceil(entry bytes / width) cycles.
 /// Latency:   an entry's data arrive `latency` cycles after the last of these; a request's with its last entry.
 /// Order:     order of the calls. Without a window a request starts when each bank it reads has a free port. With a
 ///            window of n it starts when the n-th request before it has sent its last address: reads of up to n
@@ -31,7 +31,7 @@ class BankedPorts {
           bank_slots_(timing.banks),
           window_(timing.window) {}
 
-    /// The first cycle in which the entries at these addresses can be read; a past cycle: at once.
+    /// The first cycle in which the entries at these addresses can be read; a past cycle means at once.
     std::uint64_t ready(const std::uint64_t* addresses, unsigned count) const {
         if (!window_.empty())
             return window_[oldest_];
@@ -61,10 +61,10 @@ class BankedPorts {
         return last + latency_;
     }
 
-    /// The table's columns from now on.
+    /// Sets the table's number of columns.
     void lay_out(std::uint32_t columns) { bank_of_.lay_out(columns); }
 
-    /// Instead of those counted: the port slots taken of each bank.
+    /// Replaces the counts of port slots taken, by bank.
     void assign_slots(const std::vector<std::uint64_t>& bank_slots) {
         bank_slots_ = bank_slots;
         slots_taken_ = std::accumulate(bank_slots.begin(), bank_slots.end(), std::uint64_t{0});
@@ -73,7 +73,7 @@ class BankedPorts {
     unsigned latency() const { return latency_; }
     /// Port slots taken: entries times the cycles a port needs for one.
     std::uint64_t slots_taken() const { return slots_taken_; }
-    /// Port slots a cycle, of all banks.
+    /// Port slots per cycle, of all banks.
     std::uint64_t slots_per_cycle() const { return std::uint64_t{ports_} * banks_; }
     /// Cycles that the busiest bank's ports needed.
     std::uint64_t occupied_cycles() const { return *std::max_element(bank_slots_.begin(), bank_slots_.end()) / ports_; }
@@ -89,11 +89,11 @@ class BankedPorts {
     unsigned banks_;
     unsigned latency_;
     unsigned slots_per_entry_;
-    std::vector<std::uint64_t> port_free_;   // bank by bank: the cycle from which the port is free
+    std::vector<std::uint64_t> port_free_;   // bank by bank: the cycle from which each port is free
     std::vector<std::uint64_t> bank_slots_;  // taken so far
     std::uint64_t slots_taken_ = 0;
-    std::vector<std::uint64_t> window_;  // of the last so many requests: the cycle after their last address
-    std::size_t oldest_ = 0;             // of these
+    std::vector<std::uint64_t> window_;  // for each request in the window: the cycle after its last address
+    std::size_t oldest_ = 0;             // the oldest of these
 };
 
 }  // namespace tessera

@@ -109,7 +109,7 @@ void BaseProtocolBridge::send_entry(std::uint64_t cycle) {
     answered(entry, then);
 }
 
-/// The answer to an entry is there in `cycle`; with the last one, its request's.
+/// The answer to an entry arrives in `cycle`. With that of its last entry a request is answered.
 void BaseProtocolBridge::answered(Entry& entry, std::uint64_t cycle) {
     const auto gather =
         std::find_if(gathers_.begin(), gathers_.end(), [&](const Gather& one) { return one.request == entry.request; });

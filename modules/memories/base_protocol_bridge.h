@@ -15,8 +15,8 @@ namespace tessera {
 /// memory or of off-chip memory.
 ///
 /// In:        requests, as a MemoryServer. Out: `to_memory`, an ordinary read or write for each entry.
-/// Interval:  one entry a cycle, in order; the next entry only after END_REQ of the last.
-/// Latency:   that of the memory behind, rounded up to whole cycles.
+/// Interval:  one entry per cycle, in order; each entry only after END_REQ of the one before.
+/// Latency:   that of the memory behind the bridge, rounded up to whole cycles.
 /// Accepts:   END_REQ by return, later, or implied by the answer; an answer by return (TLM_COMPLETED, or BEGIN_RESP, to
 ///            which END_RESP is sent at once) or later; answers in any order. Requests are answered in
 ///            order. A response other than OK becomes the request's.
@@ -31,11 +31,11 @@ class BaseProtocolBridge : public MemoryServer, public tlm::tlm_mm_interface {
                        const StallParameters& stalls = {});
     ~BaseProtocolBridge() override;
 
-    /// Entries sent, one a cycle.
+    /// Entries sent, one per cycle.
     std::uint64_t occupied_cycles() const override { return entries_sent_; }
 
   private:
-    struct Entry;  // on its way
+    struct Entry;  // under way
     struct Gather {
         MemoryRequest* request = nullptr;
         unsigned unanswered = 0;
@@ -58,11 +58,11 @@ class BaseProtocolBridge : public MemoryServer, public tlm::tlm_mm_interface {
     unsigned transport_dbg(int id, MemoryRequest& request) override;
 
     std::vector<std::unique_ptr<Entry>> entries_;
-    std::vector<Entry*> unused_;   // of these
+    std::vector<Entry*> unused_;   // those of entries_ that are free
     std::deque<Gather> gathers_;   // begun and not answered, oldest first
-    unsigned sent_ = 0;            // entries of the newest of these
-    bool sending_ = false;         // not all of them
-    Entry* on_offer_ = nullptr;    // its END_REQ has not come
+    unsigned sent_ = 0;            // entries sent of the newest gather
+    bool sending_ = false;         // not all of its entries are sent
+    Entry* on_offer_ = nullptr;    // its END_REQ has not arrived
     std::uint64_t next_send_ = 0;  // cycle
     std::uint64_t entries_sent_ = 0;
 };

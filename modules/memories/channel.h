@@ -5,19 +5,19 @@
 
 namespace tessera {
 
-/// When off-chip memory's requests are served: one channel for both directions, and for all memories that share it.
+/// The timing of off-chip memory: one channel for both directions, shared by all off-chip memories.
 ///
-/// Interval:  a request takes ceil(bytes / bandwidth) cycles of the channel.
+/// Interval:  a request occupies the channel for ceil(bytes / bandwidth) cycles.
 /// Latency:   it is answered `latency` cycles after its last byte.
-/// Order:     in the order of the calls.
+/// Order:     order of the calls.
 class Channel {
   public:
     explicit Channel(const OffChipTiming& timing) : timing_(timing) {}
 
-    /// The first cycle in which the channel is free; a past one: it is.
+    /// The first cycle in which the channel is free; a past cycle means that it is free now.
     std::uint64_t ready() const { return free_; }
 
-    /// Transfers `bytes`, from `cycle` on, when the channel must be free. Returns the cycle of the answer.
+    /// Transfers `bytes`, starting in `cycle`, in which the channel must be free. Returns the cycle of the answer.
     std::uint64_t serve(std::uint64_t bytes, std::uint64_t cycle) {
         const std::uint64_t taken = timing_.cycles(bytes);
         free_ = cycle + taken;

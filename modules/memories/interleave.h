@@ -8,20 +8,21 @@
 
 namespace tessera {
 
-/// Which bank of a table an entry lies in.
+/// The mapping from a table's entries to its banks.
 ///
-/// entry:        entry k, counted row by row, lies in bank k mod `banks`. With banks a power of two and a pitch one
-///               above a multiple of it, as of a Summed Height Table, two corners of each square share a bank.
-/// exclusive_or: bit b of the bank is the parity of some bits of the column and some of the row. Of the lowest bits of
-///               the column, one for each bit of the bank, bit b occurs in the mask of bank bit b alone: the column's
-///               other bits and the row address an entry within its bank.
+/// entry:        entry k, counted row by row, lies in bank k mod `banks`. If `banks` is a power of two and the pitch
+/// one
+///               more than a multiple of it, as for a Summed Height Table, two corners of each square share a bank.
+/// exclusive_or: bit b of the bank is the parity of selected bits of the column and of the row. Of the lowest bits of
+///               the column, as many as the bank number has, bit b occurs only in the mask of bank bit b, so that the
+///               column's other bits and the row address an entry within its bank.
 class BankOfEntry {
   public:
     struct Masks {
         std::uint32_t column;
         std::uint32_t row;
     };
-    /// For bit b of the bank. Found by search for the fewest conflicts within an edge's three rectangles, over all
+    /// The masks of bank bit b. Found by a search for the fewest conflicts within an edge's three rectangles, over all
     /// numbers of banks (modules/DECISIONS.md).
     static constexpr std::array<Masks, 6> masks{
         {{0x041, 0x0cd}, {0x142, 0x1b4}, {0x184, 0x127}, {0x188, 0x1fa}, {0x010, 0x0b7}, {0x120, 0x022}}};
@@ -33,7 +34,7 @@ class BankOfEntry {
           banks_(timing.banks),
           interleave_(timing.interleave) {}
 
-    /// The table's columns from now on.
+    /// Sets the table's number of columns.
     void lay_out(std::uint32_t columns) { columns_ = columns; }
 
     bool several() const { return banks_ > 1; }
@@ -46,7 +47,7 @@ class BankOfEntry {
         return of(static_cast<std::uint32_t>(entry % columns_), static_cast<std::uint32_t>(entry / columns_), banks_);
     }
 
-    /// With exclusive_or.
+    /// The bank of an entry with exclusive_or.
     static constexpr std::size_t of(std::uint32_t column, std::uint32_t row, unsigned banks) {
         std::size_t bank = 0;
         for (std::size_t b = 0; (1u << b) < banks; ++b)

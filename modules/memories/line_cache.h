@@ -6,18 +6,19 @@
 
 namespace tessera {
 
-/// A set-associative cache's lines: their tags, their bytes, and which of a set was used last.
+/// The lines of a set-associative cache: their tags, data and order of use.
 ///
 /// Size:   max(1, bytes / line bytes) lines, in sets of `ways`.
-/// Set:    of line n (n ^ n / sets ^ n / sets^2) mod sets: with a power of two the exclusive OR of three groups of bits.
-///         A column of a table whose pitch is a power of two lies in all sets; n mod sets would put it in a few.
-/// Victim: of a set the line used least recently, but for those that are being filled.
+/// Set:    line n is in set (n ^ n / sets ^ n / sets^2) mod sets; for a power of two the exclusive OR of three groups
+///         of bits. A table column is thus spread over all sets even if the pitch is a power of two; n mod sets would
+///         use only a few.
+/// Victim: the least recently used line of the set, except lines that are being filled.
 class LineCache {
   public:
     enum class State : std::uint8_t { empty, filling, present };
     struct Line {
         State state = State::empty;
-        std::uint64_t number = 0;  ///< in the memory
+        std::uint64_t number = 0;  ///< line number in the memory
         std::uint64_t used = 0;
         std::vector<unsigned char> data;
     };
@@ -32,13 +33,13 @@ class LineCache {
 
     std::uint64_t lines() const { return lines_.size(); }
 
-    /// Forgets all lines; none may be being filled.
+    /// Invalidates all lines. No line may be in the process of being filled.
     void clear() {
         for (Line& line : lines_)
             line.state = State::empty;
     }
 
-    /// Null: not there, and not being filled.
+    /// Returns null if the line is neither present nor being filled.
     Line* find(std::uint64_t number) {
         Line* const set = set_of(number);
         Line* const found = std::find_if(
@@ -49,7 +50,7 @@ class LineCache {
         return found;
     }
 
-    /// Begins to fill a line that is not there, in another's place. Null: the whole set is being filled.
+    /// Replaces another line by this one and begins to fill it. Returns null if the whole set is being filled.
     Line* allocate(std::uint64_t number) {
         Line* const set = set_of(number);
         Line* victim = nullptr;

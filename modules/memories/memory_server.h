@@ -19,11 +19,11 @@ namespace tessera {
 /// Accepts, queues and answers a memory's requests. A derived memory moves the data and decides when a request is
 /// served (banked_ports.h, channel.h).
 ///
-/// In:        requests (memory_request.h), from several ports. Timed mode: nb_transport; breaches of the protocol are
+/// In:        requests (memory_request.h), from several ports. Timed mode: nb_transport; violations of the protocol are
 ///            SC_ERRORs. Functional mode: b_transport and DMI, not arbitrated.
-///            `host`: TLM-2.0 base protocol, debug transport alone, for the preload.
-/// Capacity:  `buffer` requests wait to be served. Beyond that END_REQ is withheld, and ports with a request held back
-///            take turns.
+///            `host`: TLM-2.0 base protocol, debug transport only, for the preload.
+/// Capacity:  `buffer` requests wait to be served. Beyond that END_REQ is withheld, and requests held back are accepted
+///            round-robin by port.
 /// Order:     served and answered in order of arrival; within a cycle, in the order of the units.
 /// Busy:      while an answer is due. Held up: cycles in which the oldest request in the buffer could not be served.
 class MemoryServer : public Unit {
@@ -38,10 +38,10 @@ class MemoryServer : public Unit {
     MemoryServer(const sc_core::sc_module_name& name, CycleScheduler& clock, unsigned buffer,
                  const StallParameters& stalls);
 
-    /// The first cycle in which `request`, the oldest in the buffer, can be served; a past cycle: at once; ~0: not
+    /// The first cycle in which `request`, the oldest in the buffer, can be served; a past cycle means at once; ~0: not
     /// known, the derived memory wakes itself.
     virtual std::uint64_t ready(const MemoryRequest& request) const = 0;
-    /// Moves the data, sets the response, and returns the cycle of the answer; ~0: finish() will say.
+    /// Moves the data, sets the response, and returns the cycle of the answer; ~0: finish() will set it.
     virtual std::uint64_t serve(MemoryRequest& request, std::uint64_t cycle) = 0;
     virtual bool busy(std::uint64_t) const { return !answers_.empty(); }
 
@@ -53,9 +53,9 @@ class MemoryServer : public Unit {
     /// The answer to a served request is due in `cycle`.
     void finish(const MemoryRequest& request, std::uint64_t cycle);
 
-    /// Reads or writes the entries and returns the bytes moved; 0: neither is meant, or not all are there.
+    /// Reads or writes the entries and returns the bytes moved; 0: neither read nor write, or an address out of range.
     static unsigned move(Storage& storage, MemoryRequest& request);
-    /// The same, and sets the response.
+    /// Does the same, and sets the response.
     static void access(Storage& storage, MemoryRequest& request, bool may_write);
 
     void show_waiting(Signals& signals) const;
@@ -75,11 +75,11 @@ class MemoryServer : public Unit {
     void answer(const Served& served);
 
     RandomStalls stalls_;
-    std::vector<PendingItem<MemoryRequest>> held_back_;  // by port, as far as they have made requests
-    std::size_t turn_ = 0;                               // of these, the next to be let in
-    std::size_t waiting_ = 0;                            // how many of these there are
+    std::vector<PendingItem<MemoryRequest>> held_back_;  // by port, for ports that have made requests
+    std::size_t turn_ = 0;                               // the next port, round-robin
+    std::size_t waiting_ = 0;                            // number of requests held back
     Ring<Served> queue_;
-    Ring<Served> answers_;  // due; grows to as many as the ports have under way
+    Ring<Served> answers_;  // due; grows to the number of requests that the ports have under way
     std::uint64_t held_up_since_ = 0;
     bool held_up_ = false;
     std::uint64_t cycles_held_up_ = 0;

@@ -10,13 +10,13 @@ namespace tessera {
 
 /// Off-chip memory, to which the Triangle Queue spills: byte addresses from 0, reads and writes.
 ///
-/// Timing: channel.h, which tables behind caches share. Busy: while a request of its own is on the channel.
-/// Utilisation: the channel's, whoever uses it.
-/// Capacity: `size` bytes. Errors: TLM_ADDRESS_ERROR_RESPONSE beyond the size, TLM_COMMAND_ERROR_RESPONSE for anything
-/// but read and write.
+/// Timing: channel.h, shared with tables behind caches. Busy: while one of its own requests is on the channel.
+/// Utilisation: that of the channel, including all its other users.
+/// Capacity: `size` bytes. Errors: TLM_ADDRESS_ERROR_RESPONSE beyond the size, TLM_COMMAND_ERROR_RESPONSE for any
+/// command other than read and write.
 class OffChipMemory : public MemoryServer {
   public:
-    /// uncounted: bytes at the end of each request that are the model's own and take no time.
+    /// uncounted: bytes at the end of each request that exist only in the model and take no time.
     OffChipMemory(const sc_core::sc_module_name& name, CycleScheduler& clock, const OffChipTiming& timing,
                   const StallParameters& stalls, std::uint64_t size, unsigned uncounted);
 

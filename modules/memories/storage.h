@@ -6,7 +6,7 @@
 
 namespace tessera {
 
-/// A memory's bytes, at addresses [base, base + size): 0 until written. Allocated up to the highest byte written.
+/// The bytes of a memory, at addresses [base, base + size), 0 until written. Allocated up to the highest byte written.
 class Storage {
   public:
     Storage(std::uint64_t base, std::uint64_t size) : base_(base), size_(size) {}
@@ -35,14 +35,14 @@ class Storage {
         std::copy_n(from, length, &bytes_[first]);
     }
 
-    /// All bytes; their address is fixed from now on.
+    /// Allocates and returns all bytes; their address is fixed from now on.
     unsigned char* all() {
         bytes_.resize(size_);
         return bytes_.data();
     }
 
   private:
-    /// A table's entry without a call of memcpy: of 2, 4 or 6 bytes by default.
+    /// Copies a table entry without a call of memcpy: 2, 4 or 6 bytes by default.
     static void copy(unsigned char* to, const unsigned char* from, std::size_t length) {
         switch (length) {
             case 2: std::memcpy(to, from, 2); break;

@@ -28,7 +28,7 @@ TableCache::TableCache(const sc_core::sc_module_name& name, CycleScheduler& cloc
     table.clocked_by(clock, *this, timing.cache.fills, 1);
 }
 
-/// All entries of the newest request have not been looked up.
+/// Whether some entries of the newest request have yet to be looked up.
 bool TableCache::looking_up() const {
     return !gathers_.empty() && gathers_.back().looked_up < gathers_.back().request->count;
 }
@@ -60,7 +60,7 @@ void TableCache::take_entry(Gather& gather, unsigned entry, const LineCache::Lin
     gather.come |= 1u << entry;
 }
 
-/// Goes on with the newest request, as far as fills can be begun.
+/// Continues with the newest request, as far as fills can begin.
 void TableCache::look_up() {
     while (looking_up()) {
         Gather& gather = gathers_.back();

@@ -14,13 +14,13 @@ namespace tessera {
 /// A cache between the units and a table in off-chip memory, in designs with `timing.TABLE_cache_bytes`.
 ///
 /// In:        requests, as a MemoryServer. Out: `table`, reads of whole lines.
-/// Lines:     line_cache.h. A line holds as many entries as fit its bytes, none in part.
-/// Lookup:    entries in order, any number a cycle; tags are banked as the data are. An entry whose line is neither
-///            there nor on its way begins a fill. Up to `fills` lines, and as many requests, are under way: requests
-///            overtake neither at lookup nor when they are answered.
-/// Timing:    a request whose entries have all come reads them from the cache's banks (banked_ports.h).
-/// Busy:      while an answer is due; waiting for memory: while the oldest waits for a line.
-/// Functional mode: forwards to the table, past the lines.
+/// Lines:     line_cache.h. A line holds as many whole entries as fit in its bytes.
+/// Lookup:    entries in order, any number per cycle; tags are banked like the data. An entry whose line is neither
+///            present nor being filled begins a fill. Up to `fills` lines, and as many requests, are under way.
+///            Requests are looked up and answered in order.
+/// Timing:    a request whose entries have all arrived reads them from the cache's banks (banked_ports.h).
+/// Busy:      while an answer is due; waiting for memory: while the oldest request waits for a line.
+/// Functional mode: forwards to the table, bypassing the lines.
 class TableCache : public MemoryServer {
   public:
     MemoryPort table;
@@ -28,13 +28,13 @@ class TableCache : public MemoryServer {
     TableCache(const sc_core::sc_module_name& name, CycleScheduler& clock, const datapath::TableLayout& layout,
                const MemoryTiming& timing, const StallParameters& stalls);
 
-    /// Between runs: the table's content or columns have changed. Forgets all lines.
+    /// Call between runs when the table's content or columns have changed. Invalidates all lines.
     void lay_out(std::uint32_t columns) {
         ports_.lay_out(columns);
         cache_.clear();
     }
 
-    /// Entries found, or on their way, at lookup; entries that began a fill.
+    /// Entries present or being filled at lookup; entries that began a fill.
     std::uint64_t hits() const { return hits_; }
     std::uint64_t fills() const { return table.requests(); }
     std::uint64_t bytes_fetched() const { return fills() * table.entry_bytes(); }
@@ -45,11 +45,11 @@ class TableCache : public MemoryServer {
     void trace_signals(Signals& signals) const override;
 
   private:
-    /// A request that was looked up, in whole or in part.
+    /// A request that has been looked up, in whole or in part.
     struct Gather {
         MemoryRequest* request = nullptr;
-        unsigned looked_up = 0;  // entries
-        std::uint32_t come = 0;  // bit k: entry k
+        unsigned looked_up = 0;  // number of entries
+        std::uint32_t come = 0;  // bit k: entry k has arrived
         bool answered = false;
 
         bool complete() const { return come == (1u << request->count) - 1; }

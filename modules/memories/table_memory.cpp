@@ -70,8 +70,8 @@ bool TableMemory::get_direct_mem_ptr(int, MemoryRequest& request, tlm::tlm_dmi& 
     return true;
 }
 
-/// Shows the request served last, of which data is the first entry, and how many requests have come and entries have
-/// been read: several in a cycle, or in cycles that follow each other, are one pulse.
+/// Shows the request served last, with its first entry as data, and the numbers of requests received and entries read.
+/// Several in one cycle, or in consecutive cycles, are one pulse.
 void TableMemory::trace_signals(Signals& signals) const {
     Unit::trace_signals(signals);
     signals.pulse("served", slots_taken());

@@ -12,27 +12,27 @@
 
 namespace tessera {
 
-/// A memory that holds one table, or the second side of one: a dual-port memory has two sides, each with ports, a queue
-/// and figures of its own, so that neither side's readers wait for the other's. The bits are there once.
+/// A memory that holds one table, or the second side of such a memory: a dual-port memory has two sides, each with its
+/// own ports, queue and statistics, so that readers of one side do not wait for the other's. Both share one storage.
 ///
 /// Address map: [layout.base, layout.base + layout.bytes()); entry (x, y) at layout.address(x, y), little endian.
-/// Off chip it reaches to the end of its last line. Read by units, written only by the host's debug transport before
+/// Off chip it extends to the end of its last line. Read by units, written only by the host's debug transport before
 /// the run.
-/// Timing: on chip banked_ports.h; of a table in off-chip memory, which a cache reads line by line (table_cache.h),
-/// the channel that all off-chip memory shares. b_transport, DMI: the latency, once a request.
-/// Utilisation: the share of the busiest bank's port slots taken, or of cycles in which a request was held up,
+/// Timing: on chip banked_ports.h; for a table in off-chip memory, which a cache reads line by line (table_cache.h),
+/// the channel shared by all off-chip memory. b_transport, DMI: the latency, once per request.
+/// Utilisation: the fraction of the busiest bank's port slots taken, or of cycles in which a request was held up,
 /// whichever is greater: bank conflicts delay requests while most ports are idle.
-/// Errors: a write gives TLM_COMMAND_ERROR_RESPONSE, an address outside TLM_ADDRESS_ERROR_RESPONSE.
+/// Errors: a write gives TLM_COMMAND_ERROR_RESPONSE, an address out of range TLM_ADDRESS_ERROR_RESPONSE.
 class TableMemory : public MemoryServer {
   public:
     /// off_chip: used if the table has a cache.
     TableMemory(const sc_core::sc_module_name& name, CycleScheduler& clock, const datapath::TableLayout& layout,
                 const MemoryTiming& timing, const StallParameters& stalls, Channel* off_chip = nullptr);
-    /// The second side of a memory on chip, which the host fills through the first.
+    /// The second side of an on-chip memory, which the host fills through the first.
     TableMemory(const sc_core::sc_module_name& name, CycleScheduler& clock, const TableMemory& first_side,
                 const datapath::TableLayout& layout, const MemoryTiming& timing, const StallParameters& stalls);
 
-    /// Between runs: the table's columns from now on. Its base, the size of its entries and the memory's capacity stay.
+    /// Sets the table's columns between runs. Its base, entry size and the memory's capacity do not change.
     void lay_out(std::uint32_t columns) { ports_.lay_out(columns); }
 
     /// Entries read by transactions; reads through DMI are counted by the reader.
@@ -46,9 +46,9 @@ class TableMemory : public MemoryServer {
     }
     void trace_signals(Signals& signals) const override;
 
-    /// The figures of a run in which no request came (modules/conductor.h).
+    /// The statistics of a run without requests (modules/conductor.h).
     struct Figures {
-        std::vector<std::uint64_t> bank_slots;  ///< port slots taken of each bank
+        std::vector<std::uint64_t> bank_slots;  ///< port slots taken, by bank
         std::uint64_t entries = 0;
         std::uint64_t cycles_held_up = 0;
     };
@@ -72,21 +72,21 @@ class TableMemory : public MemoryServer {
     unsigned last_entry_bytes_ = 0;
 };
 
-/// The displacement map: one unsigned code per texel. Read by Displace Vertex, with Formats::codes also by Summed
+/// The displacement map: one unsigned code per texel. Read by Displace Vertex and, with Formats::codes, by the Summed
 /// Height Test. The Curvature Test reads its second side.
 class DisplacementMap : public TableMemory {
   public:
     using TableMemory::TableMemory;
 };
 
-/// The normal map: three signed components per texel, in the tangent frame. Read by Normal Test.
+/// The normal map: three signed components per texel, in the tangent frame. Read by the Normal Test.
 class NormalMap : public TableMemory {
   public:
     using TableMemory::TableMemory;
 };
 
-/// The Summed Height Table: (width + 1) x (height + 1) sums modulo 2^n; or the Rank Table: an entry a texel of the base
-/// mesh's lattice. Read by Summed Height Test or Rank Test.
+/// The Summed Height Table: (width + 1) x (height + 1) sums modulo 2^n; or the Rank Table: one entry per texel of the
+/// base mesh's lattice. Read by the Summed Height Test or the Rank Test.
 class HeightTable : public TableMemory {
   public:
     using TableMemory::TableMemory;

@@ -9,17 +9,18 @@ namespace tessera::schedule {
 
 /// A triangle in Pass or Tessellate.
 struct Join {
-    Cycle first_edge = 0;  ///< when one came before there was a place for it
-    Cycle open = 0;
-    Cycle geometry = 0, tests = 0;                ///< the last part of each branch
-    std::array<Cycle, most_tests_units> edges{};  ///< the last edge from each Tessellation Tests unit
+    Cycle first_edge = 0;                         ///< arrival of the first edge, if before `open`
+    Cycle open = 0;                               ///< when the triangle got a place
+    Cycle geometry = 0, tests = 0;                ///< last part of each branch
+    std::array<Cycle, most_tests_units> edges{};  ///< last edge from each Tessellation Tests unit
     Cycle start = 0, finish = 0, depart = 0;
     Unit to = nobody;
     bool has_edges = false;
 };
 
-/// What becomes of a triangle once all of its parts have come: Pass or Tessellate's pipeline, then Lighting and the
-/// rasteriser, or Tessellation, which fills the queue. Triangles come in order, and nothing that comes later holds them up.
+/// The units that a triangle passes through once all of its parts have arrived: Pass or Tessellate's pipeline, then
+/// either Lighting and the rasteriser, or Tessellation, which fills the queue. Triangles are processed in order, so the
+/// cycles of a triangle do not depend on later ones.
 class Backend {
   public:
     Backend(const Plan& plan, Source& source)
@@ -32,9 +33,9 @@ class Backend {
           lighting_(plan.lighting),
           rasteriser_(plan.rasteriser) {}
 
-    /// The next triangle has been complete since this cycle. Returns when it leaves its place.
+    /// The next triangle is complete from this cycle on. Returns the cycle in which it leaves its place.
     Cycle start(Cycle complete) { return join_.start(complete); }
-    /// The triangle that started last goes where `facts` says.
+    /// Sends the triangle that started last where `facts` says.
     void decide(Join& join, const Facts& facts) {
         join.finish = join.start + join_.latency();
         const Cycle offer = std::max(join.finish, join_.last_depart());
@@ -50,7 +51,8 @@ class Backend {
         join_level_.stay(join.open, join.depart);
         last_ = std::max(last_, join.depart);
     }
-    /// Of Pass or Tessellate, triangle by triangle. first_edge: when the first edge came of those that had no place.
+    /// Accounts for Pass or Tessellate's states, triangle by triangle. first_edge: the cycle in which the first edge
+    /// arrived of the triangles that had no place.
     void account(const Join& join, Cycle first_edge) {
         join_states_.until(std::min(join.open, first_edge), State::starved);
         join_states_.until(join.open, State::starved, transform);
@@ -76,7 +78,7 @@ class Backend {
     }
 
   private:
-    /// Returns when Lighting takes the triangle.
+    /// Returns the cycle in which Lighting accepts the triangle.
     Cycle light(Cycle offer) {
         const Cycle taken = lighting_.take(offer);
         lighting_.start();
@@ -86,7 +88,7 @@ class Backend {
         last_ = std::max(last_, lit);
         return taken;
     }
-    /// Returns when Tessellation takes the triangle.
+    /// Returns the cycle in which Tessellation accepts the triangle.
     Cycle split(Cycle offer, const Facts& facts) {
         const Cycle taken = tessellation_input_.take(offer);
         const Cycle begin = std::max(taken, tessellated_);
@@ -112,8 +114,8 @@ class Backend {
     States join_states_;
     Level join_level_;
     Input tessellation_input_;
-    Cycle tessellated_ = 0;  // the last child has been taken
-    Cycle next_child_ = 0;   // may be sent
+    Cycle tessellated_ = 0;  // in which the last child was accepted
+    Cycle next_child_ = 0;   // from which the next child may be sent
     States tessellation_states_;
     Level tessellation_level_{1};
     Stage lighting_;

@@ -10,17 +10,18 @@ namespace tessera::schedule {
 
 constexpr Cycle never = ~Cycle{0};
 
-/// Which units are to act in which cycle. Within a cycle the first of those that are due acts, until none is left: numbered
-/// downstream first, so that a place that becomes free is filled in the same cycle.
+/// Schedules calls of units by cycle. Within a cycle the unit with the lowest number that is due is called next, until
+/// none is due. Units are numbered downstream first, so that a place that becomes free is filled in the same cycle.
 class Calls {
   public:
     static constexpr unsigned most_units = 32;
 
     Cycle now() const { return now_; }
 
-    /// `unit` acts (again) in the present cycle.
+    /// Schedules `unit` (again) for the present cycle.
     void wake(unsigned unit) { due_now_ |= 1u << unit; }
-    /// The same in this cycle, if it is not past; if it is far off, also before. never: not at all.
+    /// Schedules `unit` for this cycle, for the present one if this cycle is past, and for an earlier one if it is far
+    /// off. Does nothing for `never`.
     void wake_at(unsigned unit, Cycle cycle) {
         if (cycle <= now_) {
             wake(unit);
@@ -31,14 +32,14 @@ class Calls {
         }
     }
 
-    /// A unit is due in the present cycle: the first.
+    /// Whether a unit is due in the present cycle; next() removes and returns the first.
     bool any() const { return due_now_ != 0; }
     unsigned next() {
         const auto unit = static_cast<unsigned>(__builtin_ctz(due_now_));
         due_now_ &= due_now_ - 1;
         return unit;
     }
-    /// Goes to the next cycle in which a unit is due; false: there is none.
+    /// Advances to the next cycle in which a unit is due. Returns false if there is none.
     bool advance() {
         Cycle cycle = now_ + 1;
         for (std::size_t step = 0; step <= words; ++step, cycle = (cycle | 63) + 1) {
@@ -59,8 +60,8 @@ class Calls {
 
     Cycle now_ = 0;
     std::uint32_t due_now_ = 0;
-    std::array<std::uint32_t, span> due_{};        // by cycle modulo span: one bit a unit
-    std::array<std::uint64_t, words> occupied_{};  // one bit a cycle: due_ is not zero
+    std::array<std::uint32_t, span> due_{};        // by cycle modulo span: one bit per unit
+    std::array<std::uint64_t, words> occupied_{};  // one bit per cycle: due_ is not zero
 };
 
 }  // namespace tessera::schedule

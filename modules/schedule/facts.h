@@ -9,14 +9,14 @@ constexpr unsigned parts_of_a_triangle = 9;
 constexpr unsigned first_edge_part = 6;
 constexpr unsigned vertex_parts = 0007, edge_parts = 0700, all_parts = 0777;
 
-/// The table entries that a unit read for one part of a triangle: one to three requests, one after another, all to one
-/// of its memories.
+/// The table entries that a unit read for one part of a triangle: up to three requests, one after another, all to the
+/// same one of its memories.
 struct PartReads {
     static constexpr unsigned most_requests = 3;
     static constexpr unsigned most_entries = 27;
 
     std::uint8_t requests = 0;
-    std::uint8_t memory = 0;                          ///< which of the unit's
+    std::uint8_t memory = 0;                          ///< which of the unit's memories
     std::array<std::uint8_t, most_requests> entries;  ///< of each request
     std::array<std::uint8_t, most_entries> banks;     ///< of each entry, if the table has more than one
 };
@@ -28,12 +28,12 @@ enum class Way : std::uint8_t { tessellation, lighting, dropped };
 struct Facts {
     using Reads = std::array<PartReads, parts_of_a_triangle>;
 
-    std::uint16_t parts = 0;  ///< that are not known yet
-    bool tested = true;       ///< its vertices and edges go to the tests
+    std::uint16_t parts = 0;  ///< parts that are not known yet
+    bool tested = true;       ///< the vertices and edges go to the tests
     Reads displace_vertex, height_test, normal_test;
     Way way = Way::dropped;
     unsigned children = 0;
-    std::array<std::uint32_t, 4> place{};  ///< of each child, where the caller keeps it
+    std::array<std::uint32_t, 4> place{};  ///< where the caller keeps each child
 };
 
 }  // namespace tessera::schedule

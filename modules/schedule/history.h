@@ -7,11 +7,11 @@ namespace tessera::schedule {
 
 using Cycle = std::uint64_t;
 
-/// The last so many of a sequence, by their numbers.
+/// The last items of a sequence, accessed by number.
 template <class Item>
 class Latest {
   public:
-    /// most: at least so many.
+    /// most: the least number of items that are kept.
     explicit Latest(std::size_t most) {
         std::size_t size = 1;
         while (size < most)
@@ -27,10 +27,10 @@ class Latest {
     std::uint64_t mask_ = 0;
 };
 
-/// In which cycle each of the last items did something, by the item's number. Before the first item: cycle 0.
+/// The cycle of some event for each of the last items, by item number; cycle 0 for numbers before the first item.
 class History {
   public:
-    /// depth: how far back from the next item it is asked.
+    /// depth: the largest distance back from the next item that is read.
     explicit History(std::size_t depth) : cycles_(depth) {}
 
     void add(Cycle cycle) { cycles_[count_++] = cycle; }

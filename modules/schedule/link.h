@@ -7,7 +7,7 @@
 
 namespace tessera::schedule {
 
-/// A part of a triangle in some pass.
+/// A part of a triangle in a given pass.
 class Item {
   public:
     Item() = default;
@@ -19,16 +19,16 @@ class Item {
     std::uint64_t number_ = 0;
 };
 
-/// Between two units: the buffer at the consumer's input, and the item on offer that it has not taken.
+/// A connection of two units: the buffer at the consumer's input, and the item on offer that is not accepted yet.
 class Link {
   public:
-    /// from, to: which of the calls are the producer's and the consumer's.
+    /// from, to: the numbers of producer and consumer in `calls`.
     Link(Calls& calls, const InputPlan& plan, unsigned from, unsigned to)
         : calls_(&calls), stalls_(plan.stalls), from_(from), to_(to), buffer_(plan.depth) {}
 
-    /// Nothing is on offer.
+    /// True if nothing is on offer.
     bool free() const { return !offers_; }
-    /// True: taken at once.
+    /// Offers an item. Returns true if it is accepted at once.
     bool send(Item item) {
         const unsigned stall = stalls_.next();
         if (stall == 0 && !buffer_.full()) {
@@ -43,7 +43,7 @@ class Link {
             calls_->wake_at(to_, due_);
         return false;
     }
-    /// The consumer takes what is on offer, if it can. To be called whenever it acts.
+    /// Accepts the item on offer, if possible. The consumer calls this whenever it is called.
     void admit() {
         if (!offers_ || buffer_.full())
             return;
@@ -58,7 +58,7 @@ class Link {
 
     bool empty() const { return buffer_.empty(); }
     Item front() const { return buffer_.front().item; }
-    /// When the first item was taken.
+    /// The cycle in which the first item was accepted.
     Cycle since() const { return buffer_.front().taken; }
     void pop() {
         buffer_.pop();

@@ -105,7 +105,8 @@ void Machine::geometry(unsigned part, const Facts& facts) {
     transform_.depart(departs);
 }
 
-/// Get Triangle, Calculate New U, the tests, Collect Tests, Pass or Tessellate. A vertex ends in the Normal Test.
+/// Get Triangle, Calculate New U, the tests, Collect Tests, Pass or Tessellate. A vertex goes no further than the
+/// Normal Test.
 void Machine::test(unsigned part, const Facts& facts) {
     const bool is_edge = part >= first_edge_part;
     const bool base = (facts.parts & vertex_parts) != 0;
@@ -170,7 +171,7 @@ void Machine::test(unsigned part, const Facts& facts) {
     join_edges_.pop(joining_.tests);
 }
 
-/// Pass or Tessellate, once all parts have come.
+/// Pass or Tessellate, once all parts have arrived.
 void Machine::join(const Facts& facts) {
     joining_.start = backend_.start(std::max(joining_.geometry, joining_.tests));
     join_starts_.add(joining_.start);
@@ -181,7 +182,7 @@ void Machine::join(const Facts& facts) {
         account_joins(joining_.first_edge);
 }
 
-/// Of several outputs that are not free the first counts.
+/// If several outputs are not free, the first is taken as the cause.
 void Machine::account_get_triangle(Cycle begin, Cycle joined) {
     get_triangle_states_.until(begin, State::starved);
     unsigned geometry = 0, tests = 0;
@@ -209,7 +210,7 @@ void Machine::account_get_triangle(Cycle begin, Cycle joined) {
     }
 }
 
-/// first_edge: when the first edge came of these triangles.
+/// first_edge: the cycle in which the first edge of these triangles arrived.
 void Machine::account_joins(Cycle first_edge) {
     for (std::uint64_t k = joins_.first(); k < joins_.count(); ++k)
         backend_.account(joins_[k], first_edge);

@@ -7,8 +7,8 @@
 
 namespace tessera::schedule {
 
-/// When everything happens in the machine of triangles if each memory has one reader: each item's cycles follow from those
-/// of the items before it (README.md).
+/// Timetable of the triangle design in which each memory has one reader. The cycles of each item are computed from
+/// those of the items before it (README.md).
 class Machine final : public Timetable {
   public:
     explicit Machine(const Plan& plan);
@@ -20,8 +20,8 @@ class Machine final : public Timetable {
     std::uint64_t edges(unsigned) const override { return join_edges_.taken(); }
 
   private:
-    /// One of Get Triangle's outputs: the cycle of its next part, and of what it has sent of the triangle, when that was
-    /// on offer.
+    /// One of Get Triangle's outputs: the cycle from which it may send its next part, and the cycles in which parts of
+    /// the current triangle were on offer.
     struct Branch {
         struct Offer {
             Cycle from, to;
@@ -49,7 +49,7 @@ class Machine final : public Timetable {
     };
     void geometry(unsigned part, const Facts& facts);
     void test(unsigned part, const Facts& facts);
-    /// Returns when the last entry has come; reads[].requests > 0.
+    /// Returns the cycle in which the last entry arrives. reads.requests must not be 0.
     Cycle read(Table& table, const PartReads& reads, Cycle start, Cycle& asked);
     void join(const Facts& facts);
     void account_get_triangle(Cycle begin, Cycle joined);
@@ -61,19 +61,19 @@ class Machine final : public Timetable {
     Stage calculate_new_u_, tex_coord_test_, height_test_, normal_test_, view_test_;
     Input corners_;
     std::array<Input, 4> results_;
-    Cycle collected_ = 0;  // the last edge has left Collect Tests
+    Cycle collected_ = 0;  // in which the last edge left Collect Tests
     States collect_states_;
     Level collect_level_{1};
     Table displacement_map_, displacement_map_for_tests_, normal_map_, height_table_;
-    Cycle vertices_asked_ = 0, heights_asked_ = 0, normals_asked_ = 0;  // the last request was taken
+    Cycle vertices_asked_ = 0, heights_asked_ = 0, normals_asked_ = 0;  // last request accepted
 
     Input join_parts_, join_edges_;
     History join_starts_;
-    Sequence<Join> joins_;  // that are not accounted for
+    Sequence<Join> joins_;  // not yet accounted for
     Join joining_;
-    bool opened_ = false;                          // joining_
-    Cycle arrived_ = 0;                            // the triangle itself
-    Cycle corners_come_ = 0, corners_bumped_ = 0;  // of a base triangle
+    bool opened_ = false;                          // joining_ has a place
+    Cycle arrived_ = 0;                            // of the triangle itself
+    Cycle corners_come_ = 0, corners_bumped_ = 0;  // of the last corner of a base triangle
 };
 
 }  // namespace tessera::schedule

@@ -12,11 +12,11 @@ namespace tessera::schedule {
 struct TestsPlan {
     StagePlan calculate_new_u, tex_coord_test, height_test, normal_test, view_test;
     InputPlan view_test_corners;
-    std::array<InputPlan, 4> results;  ///< of Collect Tests: Normal, Tex Coord, height and View Test
+    std::array<InputPlan, 4> results;  ///< of Collect Tests, from the Normal, Tex Coord, height and View Tests
     InputPlan join_edges;              ///< of Pass or Tessellate
 };
 
-/// What the machine is built of.
+/// The units, buffers and memories of the machine.
 struct Plan {
     SourcePlan source;
     PipelinePlan get_triangle;
@@ -24,15 +24,15 @@ struct Plan {
     unsigned tests_units = 1;  ///< 1 or 3
     std::array<TestsPlan, most_tests_units> tests;
     InputPlan join_triangles, join_parts;  ///< of Pass or Tessellate
-    unsigned join_places = 1;              ///< triangles that are not complete
+    unsigned join_places = 1;              ///< for triangles that are not complete
     PipelinePlan join;
     InputPlan tessellation_input;
     PipelinePlan tessellation;
     StagePlan lighting;
     InputPlan rasteriser;
     TablePlan displacement_map, normal_map, height_table;
-    TablePlan displacement_map_for_tests;        ///< the height test's second memory, if it has one of its own
-    bool heights_from_displacement_map = false;  ///< that memory is the displacement map itself
+    TablePlan displacement_map_for_tests;        ///< second memory of the height test, if it has its own
+    bool heights_from_displacement_map = false;  ///< the second memory is the displacement map itself
 };
 
 }  // namespace tessera::schedule

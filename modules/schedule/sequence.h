@@ -6,7 +6,7 @@
 
 namespace tessera::schedule {
 
-/// A list that grows at its end and is forgotten from its beginning; items keep their numbers.
+/// A list that grows at its end and is discarded from its beginning. Items keep their numbers.
 template <class Item>
 class Sequence {
   public:
@@ -15,11 +15,11 @@ class Sequence {
             items_.grow();
         items_.push(item);
     }
-    /// The number of the first item that has not been forgotten, and of the next.
+    /// The numbers of the first item still in the list, and of the next item to be added.
     std::uint64_t first() const { return first_; }
     std::uint64_t count() const { return first_ + items_.size(); }
     const Item& operator[](std::uint64_t number) const { return items_.at(static_cast<std::size_t>(number - first_)); }
-    /// Items before this one are not asked for any more.
+    /// Discards the items before this one.
     void forget_before(std::uint64_t number) {
         for (; first_ < number; ++first_)
             items_.pop();

@@ -9,10 +9,11 @@
 
 namespace tessera::schedule {
 
-/// A memory with one table and up to four readers, whose requests it takes in the order in which they come. While its buffer
-/// is full each reader's next one waits; then they take turns.
+/// A memory with one table and up to four readers. It accepts requests in order of arrival. While its buffer is full,
+/// the next request of each reader waits; waiting requests are accepted round-robin.
 ///
-/// Reader: accepted(), once its request has been taken; answered(item, cycle), once it is known when the last entry comes.
+/// A Reader has accepted(), called when a request that had to wait is accepted, and answered(item, cycle), called when
+/// the arrival cycle of the item's last entry is known.
 template <class Reader>
 class SharedTable {
   public:
@@ -22,12 +23,12 @@ class SharedTable {
         Reader* reader = nullptr;
         const std::uint8_t* banks = nullptr;  ///< of each entry
         unsigned entries = 0;
-        bool last = false;       ///< of those for this item
-        std::uint64_t item = 0;  ///< the reader's
+        bool last = false;       ///< the last request for this item
+        std::uint64_t item = 0;  ///< the reader's number for it
         Cycle taken = 0;
     };
 
-    /// call: which of the calls is the memory's.
+    /// call: the memory's number in `calls`.
     SharedTable(Calls& calls, const TablePlan& plan, unsigned call)
         : calls_(calls),
           call_(call),
@@ -36,7 +37,7 @@ class SharedTable {
           buffer_(plan.input.depth),
           offers_(std::size_t{plan.input.depth} + most_readers) {}
 
-    /// Reader number `number` offers a request. True: taken at once.
+    /// Reader `number` offers a request. Returns true if it is accepted at once.
     bool offer(const Request& request, unsigned number) {
         const Cycle now = calls_.now();
         const unsigned stall = stalls_.next();
@@ -80,7 +81,7 @@ class SharedTable {
         buffer_.push(request);
         buffer_.back().taken = calls_.now();
     }
-    /// Those held back, in turn, as far as there is room.
+    /// Accepts waiting requests round-robin while there is room.
     void admit() {
         if (waiting_ == 0)
             return;
@@ -114,10 +115,10 @@ class SharedTable {
     Ports ports_;
     Ring<Request> buffer_;
     std::array<HeldBack, most_readers> held_back_{};  // by reader
-    unsigned readers_ = 0;                            // that have asked so far
-    unsigned turn_ = 0;                               // of these, the next to be let in
-    unsigned waiting_ = 0;                            // of these, those held back
-    Ring<Cycle> offers_;                              // of the requests not served
+    unsigned readers_ = 0;                            // highest reader number so far, plus 1
+    unsigned turn_ = 0;                               // next reader, round-robin
+    unsigned waiting_ = 0;                            // readers whose request is held back
+    Ring<Cycle> offers_;                              // of the requests not served yet
 };
 
 }  // namespace tessera::schedule

@@ -22,12 +22,12 @@ Cycle Source::offer(Cycle cycle, std::uint32_t place) {
     const Cycle push = std::max(taken, next_push_);
     next_push_ = push + plan_.queue.interval;
     from_tessellation_.pop(push);
-    // A triangle that was taken before, or held back until now, is there when the queue acts by itself.
+    // A triangle that was accepted earlier, or held back until now, is present when the queue acts by itself.
     pushes_.add({moment(push, push == cycle ? by_tessellation : by_itself), place});
     return taken;
 }
 
-/// As far as they follow from the triangles that Get Triangle has begun.
+/// Computes starts and departures as far as they follow from the triangles that Get Triangle has begun.
 void Source::evaluate_pops() {
     for (bool more = true; more;) {
         more = false;
@@ -53,7 +53,7 @@ void Source::depart(std::uint64_t n) {
     const Moment before = n == 0 ? 0 : departs_[n - 1];
     const Moment offer = std::max(moment(cycle_of(starts_[n]) + plan_.queue.latency), before);
     const Cycle taken = from_queue_.take(cycle_of(offer));
-    // Else it is held back, or there is no room until Get Triangle begins another.
+    // Otherwise it is held back, or there is no room until Get Triangle begins another triangle.
     const bool at_once = taken == cycle_of(offer) && begins_[n - plan_.from_triangle_queue.depth] < taken;
     departs_.add(at_once ? offer : moment(taken, by_get_triangle));
     states_.until(cycle_of(pushes_[n].when), State::starved);
@@ -61,7 +61,7 @@ void Source::depart(std::uint64_t n) {
     states_.until(taken, State::blocked, plan_.get_triangle);
 }
 
-/// Which triangle it is. All pushes before its start must be known.
+/// The place of the triangle that leaves in this pop. All pushes before its start must be known.
 std::uint32_t Source::place_of(std::uint64_t pop) {
     if (!plan_.newest_first)
         return pushes_[stored_++].place;
@@ -72,7 +72,7 @@ std::uint32_t Source::place_of(std::uint64_t pop) {
     return newest;
 }
 
-/// While no triangle of the queue is on its way to Get Triangle.
+/// Valid while no triangle is on its way from the queue to Get Triangle.
 bool Source::below_watermark(Cycle cycle) {
     while (pushed_before_ < pushes_.count() && cycle_of(pushes_[pushed_before_].when) <= cycle)
         ++pushed_before_;
@@ -111,7 +111,7 @@ Cycle Source::due(Cycle now) {
     return due;
 }
 
-/// The queue's levels, after each push up to cycle `end`; later departures from it may not be known.
+/// Accounts for the queue's level after each push up to cycle `end`. Later departures may not be known yet.
 void Source::account(Cycle end) {
     for (; accounted_pushes_ < pushes_.count() && cycle_of(pushes_[accounted_pushes_].when) <= end;
          ++accounted_pushes_) {

@@ -19,39 +19,39 @@ struct SourcePlan {
     Unit get_triangle = nobody;
 };
 
-/// Where Get Triangle's triangles come from: the host, and an unbounded Triangle Queue.
+/// The two sources of Get Triangle's triangles: the host, and an unbounded Triangle Queue.
 ///
-/// The queue, of its n-th triangle in and its n-th out:
+/// Cycles of the n-th triangle that enters the queue and of the n-th that leaves it:
 ///     push[n] = max(taken[n], push[n - 1] + interval)
 ///     start[n] = max(push[n], start[n - 1] + interval, depart[n - stages])
-///     depart[n] = taken by Get Triangle, from max(start[n] + latency, depart[n - 1]) on
-/// The triangle that starts is the oldest, or the newest of those pushed before.
+///     depart[n] = accepted by Get Triangle, offered from max(start[n] + latency, depart[n - 1]) on
+/// The triangle that starts is the oldest one pushed before or, last in first out, the newest.
 ///
-/// Within a cycle the queue acts by itself, then on what Tessellation sends, then on what Get Triangle takes. Which
-/// triangle is the newest depends on that order, and so does the queue's highest level: its times have a phase.
+/// Within a cycle the queue first acts by itself, then on what Tessellation sends, then on what Get Triangle accepts.
+/// Which triangle is the newest and the queue's highest level depend on that order, so its times include a phase.
 class Source {
   public:
     explicit Source(const SourcePlan& plan);
 
-    /// The host has so many triangles more, from this cycle on.
+    /// The host offers this many more triangles, from this cycle on.
     void send(std::uint64_t triangles, Cycle cycle);
-    /// Tessellation offers a child to the queue, kept in `place`. Returns when it is taken.
+    /// Tessellation offers the queue a child, kept in `place`. Returns the cycle in which it is accepted.
     Cycle offer(Cycle cycle, std::uint32_t place);
 
     struct Next {
-        bool any = false;  ///< else nothing is left to do
+        bool any = false;  ///< false: nothing is left to do
         bool from_host = false;
-        std::uint32_t place = 0;  ///< if not
+        std::uint32_t place = 0;  ///< if not from the host
         Cycle begin = 0;
     };
-    /// Get Triangle can begin a triangle from cycle `free` on.
+    /// The next triangle for Get Triangle, which can begin one from cycle `free` on.
     Next next(Cycle free);
 
-    /// Of a Get Triangle that asks in the order of time, and can begin one in cycle `now`: in which cycle that is or, later,
-    /// it is to ask again; ~0: when something was offered or sent.
+    /// For a Get Triangle that is evaluated cycle by cycle and is free in cycle `now`: `now` if it can begin a
+    /// triangle, else the cycle in which to ask again; ~0: after the next offer() or send().
     Cycle due(Cycle now);
 
-    /// Accounts for all that has happened, at the end of a run.
+    /// Completes the figures at the end of a run.
     void finish(Cycle end);
 
     void observe(ItemObserver* observer) { observer_ = observer; }
@@ -59,9 +59,9 @@ class Source {
     const States& states() const { return states_; }
     std::uint64_t pushed() const { return pushes_.count(); }
     std::uint64_t item_cycles() const { return item_cycles_; }
-    /// At the end of a cycle.
+    /// Highest level at the end of a cycle.
     std::uint64_t most() const { return most_; }
-    /// At any time.
+    /// Highest level at any time, also within a cycle.
     std::uint64_t highest() const { return highest_; }
     std::uint64_t highest_in_store() const { return highest_in_store_; }
     const LevelHistory& history() const { return history_; }
@@ -88,19 +88,19 @@ class Source {
 
     SourcePlan plan_;
     Input from_host_, from_queue_, from_tessellation_;
-    std::uint64_t host_triangles_ = 0;  // that have not been taken from the buffer
-    Cycle host_taken_ = 0;              // into the buffer: the next of them
+    std::uint64_t host_triangles_ = 0;  // not yet begun
+    Cycle host_taken_ = 0;              // in which the buffer accepts the next of them
     History begins_;                    // of triangles from the queue
     Sequence<Push> pushes_;
     Sequence<Moment> starts_, departs_;  // of triangles that leave the queue
-    std::vector<std::uint32_t> store_;   // newest first: pushed, not started
-    std::uint64_t stored_ = 0;           // pushes that have been put there
+    std::vector<std::uint32_t> store_;   // last in first out: pushed, not started
+    std::uint64_t stored_ = 0;           // pushes moved to store_ or, first in first out, started
     std::uint64_t begun_ = 0;            // triangles from the queue
-    std::uint64_t pushed_before_ = 0;    // the cycle last asked about
+    std::uint64_t pushed_before_ = 0;    // pushes up to the cycle last asked about
     Cycle next_push_ = 0;
     Cycle next_start_ = 0;
 
-    // The queue's figures, up to some push.
+    // The queue's figures, up to the last push accounted for.
     States states_;
     LevelHistory history_;
     std::uint64_t accounted_pushes_ = 0;

@@ -19,7 +19,7 @@ class Input {
   public:
     explicit Input(const InputPlan& plan) : depth_(plan.depth), stalls_(plan.stalls), pops_(plan.depth) {}
 
-    /// The cycle in which the next item is taken.
+    /// Returns the cycle in which the next item is accepted.
     Cycle take(Cycle offer) { return std::max(offer + stalls_.next(), pops_[taken_++ - depth_]); }
     /// The next item leaves the buffer.
     void pop(Cycle cycle) { pops_.add(cycle); }
@@ -35,8 +35,8 @@ class Input {
 struct PipelinePlan {
     unsigned latency = 1;
     unsigned interval = 1;
-    unsigned servers = 1;  ///< side by side, which take turns
-    unsigned stages = 1;   ///< items at a time
+    unsigned servers = 1;  ///< parallel pipelines, used round-robin
+    unsigned stages = 1;   ///< most items at a time
 };
 
 /// start[n] = max(what it needs, start[n - servers] + interval, depart[n - stages])
@@ -46,7 +46,7 @@ class Pipeline {
 
     /// The first cycle in which the interval allows the next item to start.
     Cycle due() const { return due_[due_.count() - plan_.servers]; }
-    /// The next item starts: the cycle.
+    /// Starts the next item and returns the cycle.
     Cycle start(Cycle ready) {
         const Cycle cycle = std::max({ready, due(), departs_[due_.count() - plan_.stages]});
         due_.add(cycle + plan_.interval);
@@ -69,8 +69,8 @@ struct StagePlan {
     PipelinePlan pipeline;
 };
 
-/// A unit with an input and a pipeline. Of each item in order: take, start, answer if it reads a table, finish, blocked for
-/// each consumer in the order of its outputs, depart.
+/// A unit with an input and a pipeline. For each item, call in this order: take; start; answer, if it reads a table;
+/// finish; blocked, for each consumer in the order of the outputs; depart.
 class Stage {
   public:
     explicit Stage(const StagePlan& plan)
@@ -78,7 +78,8 @@ class Stage {
 
     Cycle take(Cycle offer) { return taken_ = input_.take(offer); }
 
-    /// asked: the requests of the item before have been taken. operand: what else it lacks has come, from `awaited`.
+    /// asked: the cycle in which the previous item's last request was accepted. operand: the cycle in which the data
+    /// that the item waits for arrives from unit `awaited`.
     Cycle start(Cycle asked = 0, Cycle operand = 0, Unit awaited = nobody) {
         const Cycle due = std::max(taken_, pipeline_.due());
         start_ = pipeline_.start(std::max({taken_, asked, operand}));
@@ -89,18 +90,18 @@ class Stage {
         worked_from_ = start_;
         return start_;
     }
-    /// Its last table entry has come.
+    /// The item's last table entry arrives in `cycle`.
     void answer(Cycle cycle, Unit memory) {
         worked_from_ = cycle;
         states_.until(cycle, State::waiting_for_memory, memory);
     }
-    /// The cycle in which it is offered to its consumers.
+    /// Returns the cycle in which the item is offered to its consumers.
     Cycle finish() {
         const Cycle finished = worked_from_ + pipeline_.latency();
         states_.until(finished, State::busy);
         return std::max(finished, pipeline_.last_depart());
     }
-    /// Its consumers up to this one have taken it in `cycle`.
+    /// The consumers up to this one have accepted the item by `cycle`.
     void blocked(Cycle cycle, Unit by) { states_.until(cycle, State::blocked, by); }
     void depart(Cycle cycle) {
         pipeline_.depart(cycle);

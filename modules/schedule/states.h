@@ -10,7 +10,7 @@
 
 namespace tessera::schedule {
 
-/// A unit's cycles by state and by whom, told in stretches, earliest first.
+/// Counts a unit's cycles by state and by the unit responsible. Stretches of cycles are added in order of time.
 class States {
   public:
     struct Share {
@@ -20,8 +20,8 @@ class States {
     };
     static constexpr std::size_t most_shares = 12;
 
-    /// The unit was in this state from the end of the last stretch up to, not including, `cycle`; nothing if that is
-    /// past.
+    /// Adds a stretch in this state, from the end of the last stretch up to, but not including, `cycle`. Does nothing
+    /// if the last stretch ends there or later.
     void until(Cycle cycle, State state, Unit by = nobody) {
         if (cycle <= since_)
             return;
@@ -32,7 +32,7 @@ class States {
     }
 
     Cycle cycles_in(State state) const { return cycles_[static_cast<std::size_t>(state)]; }
-    /// In the order of their first stretches; by: nobody: no more.
+    /// In the order of their first stretches. The first entry with by == nobody ends the list.
     const std::array<Share, most_shares>& shares() const { return shares_; }
 
   private:
@@ -54,20 +54,20 @@ class States {
     Cycle since_ = 0;
 };
 
-/// Told when each item came into a unit and left it.
+/// Receives the cycle in which each item enters a unit (came) and leaves it.
 class ItemObserver {
   public:
     virtual void item(Cycle cycle, bool came) = 0;
     virtual ~ItemObserver() = default;
 };
 
-/// How many items are in a unit, which they leave in the order in which they came.
+/// The number of items in a unit. Items leave it in order of arrival.
 class Level {
   public:
-    /// most: at a time.
+    /// most: the largest number of items at a time.
     explicit Level(std::size_t most) : out_(most + 1) {}
 
-    /// The next item came in `in` and left in `out`.
+    /// The next item entered in cycle `in` and left in cycle `out`.
     void stay(Cycle in, Cycle out) {
         while (left_ < items_ && out_[left_] <= in)
             ++left_;
@@ -83,9 +83,9 @@ class Level {
     void observe(ItemObserver* observer) { observer_ = observer; }
 
     std::uint64_t items() const { return items_; }
-    /// At the end of a cycle, at least one if any came.
+    /// Most items at the end of a cycle; at least one if any item entered.
     std::uint64_t most() const { return most_; }
-    /// The sum of all stays.
+    /// The sum of the cycles that each item spent in the unit.
     std::uint64_t item_cycles() const { return item_cycles_; }
 
   private:

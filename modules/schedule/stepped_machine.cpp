@@ -182,7 +182,7 @@ void SteppedMachine::pass(const Facts& facts) {
     set_get_triangle_state();
 }
 
-/// In a call. True: it wants a triangle.
+/// Get Triangle's call. Returns true if it can begin a triangle.
 bool SteppedMachine::get_triangle_begins() {
     const Cycle now = calls_.now();
     if (sending_) {
@@ -204,7 +204,7 @@ bool SteppedMachine::get_triangle_begins() {
     return false;
 }
 
-/// True: nothing is left to send, and nothing on offer.
+/// Returns true if nothing is left to send and nothing is on offer.
 bool SteppedMachine::send_parts(Branch& branch) {
     if (branch.left == 0 || !branch.link->free())
         return branch.link->free();
@@ -221,7 +221,7 @@ bool SteppedMachine::send_parts(Branch& branch) {
     return taken && branch.left == 0;
 }
 
-/// From now on. Of several outputs that are not free the first counts.
+/// Sets the state from the present cycle on. If several outputs are not free, the first is taken as the cause.
 void SteppedMachine::set_get_triangle_state() {
     get_triangle_states_.until(calls_.now(), get_triangle_state_, get_triangle_by_);
     get_triangle_by_ = nobody;
@@ -236,7 +236,7 @@ void SteppedMachine::set_get_triangle_state() {
     get_triangle_state_ = get_triangle_by_ != nobody ? State::blocked : sending_ ? State::busy : State::starved;
 }
 
-/// Pass or Tessellate, up to its decisions.
+/// Pass or Tessellate, up to and including its decisions.
 void SteppedMachine::join() {
     to_join_.admit();
     for (const auto& tests : tests_)
@@ -266,7 +266,7 @@ void SteppedMachine::take_parts() {
     }
 }
 
-/// False: there is no place for the triangle, or it has not come itself.
+/// Returns false if there is no place for the triangle, or the triangle itself has not arrived.
 bool SteppedMachine::open(std::uint64_t number) {
     const Cycle now = calls_.now();
     Pass& pass = passes_[number];
@@ -286,7 +286,7 @@ bool SteppedMachine::open(std::uint64_t number) {
     return true;
 }
 
-/// True: a triangle has left its place.
+/// Returns true if a triangle has left its place.
 bool SteppedMachine::decide() {
     if (joined_ == opened_)
         return false;

@@ -12,10 +12,11 @@
 
 namespace tessera::schedule {
 
-/// When everything happens in the machine of triangles with memories that several units read: with three Tessellation Tests
-/// units, or codes for the height test from the displacement map. The readers share a memory's ports in the order of time, and
-/// one may be passes ahead of another: the order of the items is no order of evaluation. So the units in front of Pass or Tessellate's decision are called cycle by cycle, without their data, as the clock
-/// calls those of the machine; what follows from the decision is known at once (backend.h).
+/// Timetable of the triangle design in which several units read the same memory: with three Tessellation Tests units,
+/// or if the height test reads codes from the displacement map. The readers share a memory's ports in order of time,
+/// and one may be several passes ahead of another, so that items cannot be evaluated in their own order. Instead the
+/// units before Pass or Tessellate's decision are called cycle by cycle, as the scheduler calls the clocked units, but
+/// without data. All that follows from the decision is computed at once (backend.h).
 class SteppedMachine final : public Timetable {
   public:
     explicit SteppedMachine(const Plan& plan);
@@ -68,7 +69,7 @@ class SteppedMachine final : public Timetable {
         std::array<Link, 4> results;
         Link edges;  // to Pass or Tessellate
         SteppedStage calculate_new_u, tex_coord_test, height_test, normal_test, view_test;
-        bool leaves = false;  // an edge, that Collect Tests has collected
+        bool leaves = false;  // an edge is collected and on offer
         Cycle collected = 0;
         States collect_states;
         Level collect_level{1};
@@ -76,8 +77,8 @@ class SteppedMachine final : public Timetable {
     /// One of Get Triangle's outputs.
     struct Branch {
         Link* link = nullptr;
-        unsigned takes = 0, left = 0;  ///< parts of a triangle
-        Cycle next = 0;                ///< when it may send one
+        unsigned takes = 0, left = 0;  ///< parts of a triangle: all that go here; those not sent yet
+        Cycle next = 0;                ///< from which it may send a part
         Unit consumer = nobody;
     };
 
@@ -93,22 +94,22 @@ class SteppedMachine final : public Timetable {
     Calls calls_;
     Passes passes_;
 
-    std::uint64_t begun_ = 0;   // passes
-    std::uint64_t opened_ = 0;  // of these, in Pass or Tessellate
-    std::uint64_t joined_ = 0;  // of these, decided
-    bool complete_ = false;     // the first that is not decided; it starts when its Join says
+    std::uint64_t begun_ = 0;   // passes begun
+    std::uint64_t opened_ = 0;  // passes that have had a place in Pass or Tessellate
+    std::uint64_t joined_ = 0;  // passes decided
+    bool complete_ = false;     // the first undecided pass is complete; it starts in the cycle in its Join
 
     bool sending_ = false;  // Get Triangle
     Cycle begin_ = 0;
     std::vector<Branch> branches_;
-    State get_triangle_state_ = State::starved;  // since some earlier cycle
+    State get_triangle_state_ = State::starved;  // since the last call
     Unit get_triangle_by_ = nobody;
 
     Memory displacement_map_, displacement_map_for_tests_, normal_map_, height_table_;
     Link to_calculate_new_p_, to_displace_vertex_, to_transform_, to_join_;
     SteppedStage calculate_new_p_, displace_vertex_, transform_;
     std::vector<std::unique_ptr<Tests>> tests_;
-    std::array<SteppedStage*, Calls::most_units> stages_{};  // by their calls
+    std::array<SteppedStage*, Calls::most_units> stages_{};  // by call number
 };
 
 }  // namespace tessera::schedule

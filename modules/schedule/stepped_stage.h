@@ -10,10 +10,10 @@
 
 namespace tessera::schedule {
 
-/// Of a base triangle, in a unit whose edges wait for its corners.
+/// The corners of a base triangle, in a unit whose edges wait for them.
 struct Corners {
-    unsigned left = 0;  ///< that have not come
-    Cycle come = 0;     ///< the last of the others
+    unsigned left = 0;  ///< corners that have not arrived
+    Cycle come = 0;     ///< in which the last one arrived
 };
 
 /// A triangle between Get Triangle and its decision in Pass or Tessellate.
@@ -22,14 +22,14 @@ struct Pass {
 
     Facts facts;
     CornersOfTests bumped, on_screen;            ///< in each Normal Test and View Test
-    Cycle arrived = 0;                           ///< in Pass or Tessellate
-    unsigned geometry_left = 0, tests_left = 0;  ///< parts that have not come there
+    Cycle arrived = 0;                           ///< at Pass or Tessellate: the triangle itself
+    unsigned geometry_left = 0, tests_left = 0;  ///< parts that have not arrived there
     Join join;
 };
 
 using Passes = Latest<Pass>;
 
-/// A unit with an input, a pipeline and outputs (stage.h), which is called in the cycles in which something can happen.
+/// A unit with an input, a pipeline and outputs (stage.h), called in each cycle in which its state can change.
 class SteppedStage {
   public:
     using Memory = SharedTable<SteppedStage>;
@@ -43,16 +43,16 @@ class SteppedStage {
           items_(plan.stages),
           level_(plan.stages) {}
 
-    /// parts: those that the consumer takes, one bit each.
+    /// parts: those that go to the consumer, one bit each.
     void delivers_to(Link& link, unsigned parts, Unit consumer) { outputs_.push_back({&link, parts, consumer}); }
-    /// The entries that a triangle's parts need, and the memory. number: which of its readers this is.
+    /// Sets the entries that a triangle's parts need, and the memory. number: of this unit among the memory's readers.
     void reads(Facts::Reads Facts::*reads, Memory& memory, unsigned number, Unit its) {
         reads_ = reads;
         memories_[0] = {&memory, number, its};
     }
     void reads_second(Memory& memory, unsigned number, Unit its) { memories_[1] = {&memory, number, its}; }
-    /// Edges wait for their triangle's corners, of Tessellation Tests unit `number`: those that the unit itself has read or, if
-    /// there is such a link, those that come from there.
+    /// Makes edges wait for their triangle's corners in Tessellation Tests unit `number`: the corners that the unit
+    /// itself has read or, if `from` is given, those that arrive there.
     void waits_for(Pass::CornersOfTests Pass::*corners, unsigned number, Link* from = nullptr, Unit awaited = nobody) {
         corners_ = corners;
         number_ = number;
@@ -72,12 +72,12 @@ class SteppedStage {
             calls_.wake_at(call_, first().finished);
     }
 
-    /// Its request has been taken.
+    /// The request on offer has been accepted.
     void accepted() {
         on_offer_ = false;
         calls_.wake(call_);
     }
-    /// The last entry for item n comes in this cycle.
+    /// The last entry for item n arrives in this cycle.
     void answered(std::uint64_t n, Cycle cycle) {
         InPipeline& it = items_[n];
         it.answer = cycle;
@@ -95,10 +95,10 @@ class SteppedStage {
     struct InPipeline {
         Item item;
         Cycle taken = 0;  ///< into the input's buffer
-        Cycle due = 0;    ///< from then on the interval allowed it to start
+        Cycle due = 0;    ///< from which the interval allowed it to start
         Cycle start = 0;
         Cycle answer = 0;    ///< to its last request
-        Cycle finished = 0;  ///< never: not known
+        Cycle finished = 0;  ///< `never`: not known yet
         Unit memory = nobody;
     };
     struct Output {
@@ -112,7 +112,7 @@ class SteppedStage {
         --corners.left;
         corners.come = cycle;
     }
-    /// At any time.
+    /// Accepts corners without waiting.
     void take_corners() {
         from_->admit();
         for (; !from_->empty(); from_->pop())
@@ -121,7 +121,8 @@ class SteppedStage {
 
     InPipeline& first() { return items_[departed_]; }
 
-    /// Offers the first item to its consumers. True: all have taken it. Of several that have not the first output counts.
+    /// Offers the first item to its consumers. Returns true if all have accepted it. If several have not, the first
+    /// output is taken as the cause.
     bool deliver() {
         const Item item = first().item;
         const bool offered = blocked_by_ != nobody;
@@ -142,7 +143,7 @@ class SteppedStage {
         level_.stay(first().start, calls_.now());
         ++departed_;
     }
-    /// Up to now, when the first item is finished and those before it have departed.
+    /// Accounts for the cycles up to now. The first item has finished, and those before it have departed.
     void account(const InPipeline& it) {
         states_.until(it.taken, State::starved);
         states_.until(std::min(it.start, it.due), State::busy);
@@ -152,7 +153,7 @@ class SteppedStage {
         states_.until(calls_.now(), State::busy);
     }
 
-    /// Makes the requests of the item that started last. True: all have been taken.
+    /// Makes the requests of the item that started last. Returns true if all have been accepted.
     bool ask() {
         while (asked_ < to_ask_ && !on_offer_) {
             const InPipeline& it = items_[started_ - 1];
@@ -208,7 +209,7 @@ class SteppedStage {
 
     Calls& calls_;
     Passes& passes_;
-    unsigned call_;  // which is the unit's
+    unsigned call_;  // the unit's number in calls_
     Link& input_;
     Pipeline pipeline_;
     std::vector<Output> outputs_;
@@ -223,8 +224,8 @@ class SteppedStage {
     std::uint64_t started_ = 0, departed_ = 0;
     unsigned to_ask_ = 0, asked_ = 0;  // requests of the item that started last
     unsigned asked_entries_ = 0;
-    bool on_offer_ = false;     // one of them
-    Unit blocked_by_ = nobody;  // the first item; nobody: it is not on offer
+    bool on_offer_ = false;     // a request is on offer
+    Unit blocked_by_ = nobody;  // consumer that blocks the first item; nobody: the item is not on offer
     States states_;
     Level level_;
 };

@@ -14,17 +14,17 @@ struct TablePlan {
     unsigned banks = 1;
     unsigned slots = 1;  ///< cycles a port needs for an entry
     unsigned latency = 1;
-    unsigned window = 0;     ///< requests whose reads overlap; 0: those that find each of their banks free
+    unsigned window = 0;     ///< most requests whose reads overlap; 0: a request waits until each of its banks is free
     unsigned under_way = 1;  ///< most requests at a time
 };
 
-/// What serves a table's requests, in order: its banks and their ports.
+/// The banks and ports of a table, which serve its requests in order.
 ///
-/// A request is served when a port of each bank it reads is free or, with a window, when request n - window has sent its last
-/// address; answer[n] = max(answer[n - 1], its last address + latency).
+/// A request is served when a port of each bank it reads is free or, with a window, when request n - window has sent
+/// its last address; answer[n] = max(answer[n - 1], its last address + latency).
 class Ports {
   public:
-    /// most: requests at a time.
+    /// most: the largest number of requests at a time.
     Ports(const TablePlan& plan, std::size_t most)
         : plan_(plan),
           free_(std::size_t{plan.banks} * plan.ports),
@@ -32,7 +32,7 @@ class Ports {
           window_(plan.window),
           level_(most) {}
 
-    /// The first cycle in which the ports allow a request for `count` entries, which lie in these banks.
+    /// The first cycle in which the ports allow a request for `count` entries in these banks.
     Cycle ready(const std::uint8_t* banks, unsigned count) {
         if (plan_.window > 0)
             return window_[window_.count() - plan_.window];
@@ -43,7 +43,8 @@ class Ports {
             cycle = std::max(cycle, first_free(banks[k]));
         return cycle;
     }
-    /// It was offered and taken in these cycles and is served in `cycle`. Returns when its last entry comes.
+    /// Serves in `cycle` a request that was offered and accepted in these cycles. Returns the arrival of its last
+    /// entry.
     Cycle serve(Cycle offer, Cycle taken, const std::uint8_t* banks, unsigned count, Cycle cycle) {
         held_up_ += cycle - std::max(taken, served_);
         served_ = cycle;
@@ -57,13 +58,13 @@ class Ports {
         level_.stay(offer, answer_);
         return answer_;
     }
-    /// When the last request was served.
+    /// The cycle in which the last request was served.
     Cycle served() const { return served_; }
 
     std::uint64_t entries() const { return entries_; }
     /// Cycles in which the oldest request waited for a port.
     Cycle held_up() const { return held_up_; }
-    /// Port slots taken of each bank.
+    /// Port slots taken, by bank.
     const std::vector<std::uint64_t>& bank_slots() const { return bank_slots_; }
     States& states() { return states_; }
     Level& level() { return level_; }
@@ -73,7 +74,7 @@ class Ports {
         const auto first = free_.begin() + static_cast<std::ptrdiff_t>(bank * plan_.ports);
         return *std::min_element(first, first + plan_.ports);
     }
-    /// Returns the cycle of the last entry's last address.
+    /// Returns the last cycle in which the entries' addresses occupy a port.
     Cycle read(const std::uint8_t* banks, unsigned count, Cycle cycle) {
         if (free_.size() == 1) {
             free_[0] = std::max(free_[0], cycle) + Cycle{count} * plan_.slots;
@@ -92,7 +93,7 @@ class Ports {
     }
 
     TablePlan plan_;
-    std::vector<Cycle> free_;  // bank by bank: the cycle from which the port is free
+    std::vector<Cycle> free_;  // bank by bank: the cycle from which each port is free
     std::vector<std::uint64_t> bank_slots_;
     History window_;
     std::uint64_t entries_ = 0;
@@ -103,19 +104,19 @@ class Ports {
     Cycle held_up_ = 0;
 };
 
-/// A memory with one table, read by one unit: served[n] = max(taken[n], served[n - 1], its ports).
+/// A memory with one table, read by one unit: served[n] = max(taken[n], served[n - 1], its ports free).
 class Table {
   public:
     explicit Table(const TablePlan& plan) : input_(plan.input), ports_(plan, plan.under_way) {}
 
-    /// The unit asks for `count` entries, which lie in these banks. Returns when they have come.
+    /// Requests `count` entries in these banks. Returns the cycle in which the last one arrives.
     Cycle request(Cycle offer, const std::uint8_t* banks, unsigned count) {
         taken_ = input_.take(offer);
         const Cycle served = std::max({taken_, ports_.served(), ports_.ready(banks, count)});
         input_.pop(served);
         return ports_.serve(offer, taken_, banks, count, served);
     }
-    /// When the last request was taken.
+    /// The cycle in which the last request was accepted.
     Cycle taken() const { return taken_; }
     Ports& ports() { return ports_; }
 

@@ -15,9 +15,9 @@ struct Figures {
     std::uint64_t item_cycles = 0;
 };
 
-/// When everything happens in the machine of triangles. Here: where the triangles come from, what follows from a decision,
-/// and the units' figures. What lies between is known in the order of the
-/// items where each memory has one reader (machine.h), else in the order of time (stepped_machine.h).
+/// The cycles of all events in the triangle design. This base class has the source of the triangles, the units after
+/// the decision, and the figures of all units. The units between are evaluated item by item if each memory has one
+/// reader (machine.h), else cycle by cycle (stepped_machine.h).
 class Timetable {
   public:
     explicit Timetable(const Plan& plan);
@@ -25,31 +25,31 @@ class Timetable {
     Timetable& operator=(const Timetable&) = delete;
     virtual ~Timetable() = default;
 
-    /// The host has so many triangles more, from this cycle on.
+    /// The host offers this many more triangles, from this cycle on.
     virtual void send(std::uint64_t triangles, Cycle cycle) { source_.send(triangles, cycle); }
     /// The triangle that Get Triangle begins next. Call pass() for it before the next call.
     virtual const Source::Next& next() = 0;
     virtual void pass(const Facts& facts) = 0;
 
-    /// The last cycle in which anything happened so far. Known when next() has none.
+    /// The last cycle in which anything happened so far. Valid once next() returns none.
     Cycle last() const { return backend_.last(); }
-    /// At the end of a run, of so many cycles.
+    /// To be called at the end of a run; end: its number of cycles.
     virtual void finish(Cycle end);
 
     Figures figures(Unit unit) const;
     const Ports& ports(Unit memory) const { return *ports_[memory]; }
     void observe(Unit unit, ItemObserver* observer);
     const Source& source() const { return source_; }
-    /// Most triangles that waited for their first part, or for any, at the end of a cycle.
+    /// Most triangles at Pass or Tessellate, at the end of a cycle, of which no part had arrived.
     std::uint64_t most_ahead_of_parts() const { return ahead_of_parts_.most(); }
-    /// To Calculate New P.
+    /// Parts sent to Calculate New P.
     std::uint64_t parts_sent() const { return parts_sent_; }
-    /// Of a Tessellation Tests unit: vertices taken by the View Test, and edges by Pass or Tessellate.
+    /// For Tessellation Tests unit k: vertices accepted by its View Test, and its edges accepted by Pass or Tessellate.
     virtual std::uint64_t corners(unsigned k) const = 0;
     virtual std::uint64_t edges(unsigned k) const = 0;
 
   protected:
-    /// The unit accounts for itself here.
+    /// Registers where a unit accounts for its states and items.
     void has(Unit unit, States& states, Level& level) { accounts_[unit] = {&states, &level}; }
     void has(Unit memory, Ports& ports) {
         has(memory, ports.states(), ports.level());
@@ -75,7 +75,7 @@ class Timetable {
         States* states = nullptr;
         Level* level = nullptr;
     };
-    std::array<Account, of_tests(most_tests_units, calculate_new_u)> accounts_{};  // none: of no such unit
+    std::array<Account, of_tests(most_tests_units, calculate_new_u)> accounts_{};  // null: no such unit
     std::array<const Ports*, units_with_one> ports_{};
 };
 

@@ -7,7 +7,7 @@ namespace tessera::schedule {
 using Unit = std::uint8_t;
 constexpr Unit nobody = 255;
 
-/// Those of the first Tessellation Tests unit come last; of_tests() has the others'.
+/// The units of the first Tessellation Tests unit come last. of_tests() numbers those of the others.
 enum : Unit {
     get_triangle,
     calculate_new_p,
@@ -33,7 +33,7 @@ enum : Unit {
 constexpr unsigned most_tests_units = 3;
 constexpr Unit units_of_tests = units_with_one - calculate_new_u;
 
-/// The same unit of Tessellation Tests unit k.
+/// The number of the corresponding unit in Tessellation Tests unit k.
 constexpr Unit of_tests(unsigned k, Unit unit) {
     return static_cast<Unit>(unit + k * units_of_tests);
 }

@@ -9,12 +9,12 @@
 #include "modules/sockets/parts.h"
 
 // The items of the streams. Each describes its fields once (modules/datapath/fields.h); its packed form, its width,
-// its signals in a waveform and its rows in modules/sockets/README.md follow from that list.
+// its signals in a waveform and its rows in modules/sockets/README.md are derived from that description.
 
 namespace tessera {
 
-/// Get Triangle to Calculate New P. A vertex or normal has only the first end's fields; n_i of a normal is N'. Of
-/// families n_j of a vertex is T, and n_i, n_j of an edge are N_ij, N'_ij.
+/// Get Triangle to Calculate New P. A vertex or normal has only the first end's fields; n_i of a normal is N'. In the
+/// family design n_j of a vertex is T, and n_i, n_j of an edge are N_ij, N'_ij.
 struct GeometryOperands {
     static constexpr const char* name = "geometry operands";
     PartTag tag;
@@ -57,7 +57,7 @@ struct BasePoint {
     }
 };
 
-/// Displace Vertex to Transform. Of families displaced_n is N', of a vertex too.
+/// Displace Vertex to Transform. In the family design displaced_n is N', also for a vertex.
 struct DisplacedPoint : BasePoint {
     static constexpr const char* name = "displaced point";
     datapath::Position displaced;
@@ -71,7 +71,7 @@ struct DisplacedPoint : BasePoint {
     }
 };
 
-/// Transform to Pass or Tessellate. n of a normal is N's now. Of families displaced_n is, and n of a vertex is N'.
+/// Transform to Pass or Tessellate. n of a normal is N's; in the family design displaced_n is, and n of a vertex is N'.
 struct ScreenPoint : DisplacedPoint {
     static constexpr const char* name = "screen point";
     datapath::ScreenPosition screen;
@@ -96,7 +96,7 @@ struct ScreenCorner {
     }
 };
 
-/// What the tests need to know of one end of an edge.
+/// The values of one end of an edge that the tests need.
 struct EdgeEnd {
     datapath::TexCoord t;
     datapath::Direction n, tangent;
@@ -123,12 +123,12 @@ struct EdgeEnd {
     }
 };
 
-/// Get Triangle to Tessellation Tests: an edge, or a vertex of a base triangle, which has only the first end's fields;
-/// of families, Tessellation to Tessellation Tests, and edges alone.
+/// Get Triangle to Tessellation Tests: an edge, or a vertex of a base triangle, which has only the first end's fields.
+/// In the family design Tessellation to Tessellation Tests, edges only.
 struct TestOperands {
     static constexpr const char* name = "test operands";
     PartTag tag;
-    std::uint8_t new_vertices = 0;  ///< of the triangle: bit k, vertex k has no P's, N' yet
+    std::uint8_t new_vertices = 0;  ///< of the triangle: bit k is set if vertex k has no P's, N' yet
     std::array<EdgeEnd, 2> ends;
 
     template <class Codec, class Any>
@@ -292,7 +292,7 @@ struct NormalResult {
     }
 };
 
-/// Tessellation Tests to Pass or Tessellate: what the four tests found for one edge.
+/// Tessellation Tests to Pass or Tessellate: the results of the four tests for one edge.
 struct TestedEdge {
     static constexpr const char* name = "tested edge";
     PartTag tag;
@@ -313,7 +313,7 @@ struct TestedEdge {
     }
 };
 
-/// Get Triangle to Pass or Tessellate: a triangle whose parts have been sent; carries what the parts do not.
+/// Get Triangle to Pass or Tessellate: a triangle whose parts are sent; carries the values that its parts do not.
 struct TakenTriangle {
     static constexpr const char* name = "taken triangle";
     Tag tag = 0;
@@ -360,13 +360,13 @@ struct DecidedTriangle {
     }
 };
 
-/// Tessellation to Pass or Tessellate, in a machine of families: a triangle and the vertices inserted on its split
-/// edges; or a base triangle, whose edges are new.
+/// Tessellation to Pass or Tessellate, in the family design: a triangle and the vertices inserted on its split edges;
+/// or a base triangle, whose edges are new.
 struct Family {
     static constexpr const char* name = "family";
     Tag tag = 0;
     Origin origin;
-    std::array<datapath::Vertex, 6> vertices;  ///< as in ChildIndices
+    std::array<datapath::Vertex, 6> vertices;  ///< in the order of ChildIndices
     datapath::Triangle triangle;               ///< all but its vertices and midpoints
     bool second_diagonal = false;
     bool untested = false;
@@ -391,8 +391,8 @@ struct Family {
     }
 };
 
-/// Host, Tessellation and Triangle Queue: a triangle as it waits in the queue. Of a base triangle the host sets P, N,
-/// T, handedness and t of each vertex.
+/// From host, Tessellation and Triangle Queue: a triangle as it waits in the queue. For a base triangle the host sets
+/// P, N, T, handedness and t of each vertex.
 struct QueuedTriangle {
     static constexpr const char* name = "triangle";
 
@@ -452,7 +452,7 @@ struct LitTriangle {
     }
 };
 
-/// Triangle Queue to Get Triangle, whenever it changes: whether a triangle may be taken from the host.
+/// Triangle Queue to Get Triangle, whenever it changes: whether a triangle may be accepted from the host.
 struct QueueLevel {
     static constexpr const char* name = "queue level";
     bool below_watermark = true;
@@ -463,7 +463,7 @@ struct QueueLevel {
     }
 };
 
-/// An item's description; a triangle of the datapath is described by QueuedTriangle.
+/// The description of an item; QueuedTriangle describes the datapath's triangle.
 template <class Item>
 struct DescriptionOf {
     using Type = Item;
@@ -497,14 +497,14 @@ constexpr bool is_described = false;
 template <class Item>
 constexpr bool is_described<Item, std::void_t<decltype(DescriptionOf<Item>::Type::name)>> = true;
 
-/// Hands an item's fields to a codec.
+/// Passes an item's fields to a codec.
 template <class Codec, class Item>
 constexpr void describe_item(Codec& codec, Item& item, const datapath::Formats& formats, int tag_bits) {
     datapath::Fields<Codec> fields(codec, formats, tag_bits);
     DescriptionOf<std::remove_const_t<Item>>::Type::describe(fields, item);
 }
 
-/// Bits of an item: wires of its stream.
+/// Bits in an item, and so the wires of its stream.
 template <class Item>
 constexpr std::uint32_t item_bits(const datapath::Formats& formats, int tag_bits) {
     datapath::WidthCounter counter;

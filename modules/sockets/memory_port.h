@@ -13,21 +13,21 @@
 
 namespace tessera {
 
-/// A unit's port on a memory, for entries of one size: a table's, or records in off-chip memory.
+/// A unit's port to a memory, for entries of one size: table entries, or records in off-chip memory.
 ///
-/// Functional mode: read(). DMI where the memory grants it and the unit may use it, else b_transport; the same values,
-/// the same added time and the same counts either way.
+/// Functional mode: read(). Uses DMI if the memory grants it and the unit may use it, else b_transport; values, added
+/// time and counts are the same.
 /// Timed mode: requests (memory_request.h). One on offer at a time, several under way, answered in order. The unit is
 /// called when a delayed request is accepted and when an answer arrives.
-/// Errors: responses other than OK, and breaches of the protocol, are SC_ERRORs that name the port.
+/// Errors: responses other than OK, and violations of the protocol, are SC_ERRORs that name the port.
 class MemoryPort {
   public:
     tlm_utils::simple_initiator_socket<MemoryPort, 32, MemoryProtocol> socket;
 
-    /// entry_bytes: at least 1; read() and entry() are for 8 at most.
+    /// entry_bytes: at least 1; at most 8 for read() and entry().
     MemoryPort(const char* name, std::size_t entry_bytes, bool use_direct_memory);
 
-    /// Several reads in a row. Through DMI they are counted and timed once, at the end; on destruction.
+    /// Several consecutive reads. Reads through DMI are counted and timed together, on destruction.
     class Burst {
       public:
         Burst(MemoryPort& port, sc_core::sc_time& delay)
@@ -71,22 +71,22 @@ class MemoryPort {
     void clocked_by(CycleScheduler& clock, CycleProcess& unit, std::size_t most_under_way,
                     unsigned most_entries = datapath::most_rectangle_entries);
 
-    /// A request may be offered.
+    /// True if a request may be offered.
     bool may_request() const { return !on_offer_ && !slots_.full(); }
-    /// The request on offer has not been taken.
+    /// True if a request is on offer that has not been accepted.
     bool on_offer() const { return on_offer_; }
     std::size_t requests_under_way() const { return slots_.size(); }
-    /// Of the newest request, if any: the address of its first entry.
+    /// The address of the first entry of the newest request, if any.
     std::uint64_t last_address() const { return slots_.empty() ? 0 : slots_.back().request.address[0]; }
 
-    /// Asks for `count` entries, 1 to most_rectangle_entries.
+    /// Requests `count` entries, 1 to most_rectangle_entries.
     void request(const std::uint64_t* addresses, unsigned count);
     void request(std::uint64_t address) { request(&address, 1); }
-    /// The entry that write() will send; to be filled in just before.
+    /// The entry that write() will send. Fill it in just before.
     unsigned char* entry_to_write() { return slots_.at(slots_.size()).data.data(); }
     void write(std::uint64_t address);
 
-    /// The oldest request under way has been answered.
+    /// True if the oldest request under way has been answered.
     bool answered() const { return answered_ > 0; }
     bool answer_is_read() const { return slots_.front().request.command == tlm::TLM_READ_COMMAND; }
     /// Entry k of that answer, zero-extended.
@@ -95,7 +95,7 @@ class MemoryPort {
         copy_entries(k, 1, &value);
         return value;
     }
-    /// `count` of them from `first` on.
+    /// Copies `count` entries of that answer, from entry `first` on.
     void copy_entries(unsigned first, unsigned count, std::uint64_t* to) const {
         const unsigned char* from = answer() + std::size_t{first} * entry_bytes_;
         for (unsigned k = 0; k < count; ++k, from += entry_bytes_) {
@@ -111,7 +111,7 @@ class MemoryPort {
         --answered_;
     }
 
-    /// Requests made in timed mode; entries read in either.
+    /// Requests made in timed mode; entries read in either mode.
     std::uint64_t requests() const { return requests_; }
     std::uint64_t reads() const { return reads_; }
     unsigned entry_bytes() const { return entry_bytes_; }
@@ -121,13 +121,13 @@ class MemoryPort {
     void bind(Memory& memory) {
         bind(memory, memory);
     }
-    /// The same through a module in front of the memory.
+    /// Binds it through a module in front of the memory.
     template <class Interposer>
     void bind(Interposer& before, const sc_core::sc_object& memory) {
         socket.bind(before.socket);
         memory_ = &memory;
     }
-    /// The memory, which the unit waits for.
+    /// The memory that the unit waits for.
     const sc_core::sc_object* memory() const { return memory_; }
 
   private:
@@ -157,8 +157,8 @@ class MemoryPort {
     CycleScheduler* clock_ = nullptr;
     CycleProcess* unit_ = nullptr;
     Ring<Slot> slots_;          // the requests under way
-    std::size_t answered_ = 0;  // of these, the first so many
-    bool on_offer_ = false;     // the newest of these
+    std::size_t answered_ = 0;  // number of these answered: the oldest ones
+    bool on_offer_ = false;     // the newest of these is not accepted yet
     const sc_core::sc_object* memory_ = nullptr;
 };
 

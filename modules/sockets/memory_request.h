@@ -23,15 +23,15 @@ struct MemoryRequest {
     bool is_ok() const { return response == tlm::TLM_OK_RESPONSE; }
 };
 
-/// The protocol between a unit's MemoryPort and a MemoryServer: traits of its own, because a memory
-/// of the base protocol, which reads one address, would answer a gather wrongly. base_protocol_bridge.h connects to
-/// memories of the TLM-2.0 base protocol.
+/// The protocol between a unit's MemoryPort and a MemoryServer. It has its own traits class, because a memory of the
+/// base protocol, which reads one address, would answer a gather wrongly. base_protocol_bridge.h connects to memories
+/// of the TLM-2.0 base protocol.
 ///
 /// b_transport, DMI, debug transport: as in the base protocol; debug transport returns the bytes moved, all or 0.
-/// nb_transport: BEGIN_REQ offers a request; END_REQ, by return (TLM_UPDATED) or later on the backward path, takes it;
-/// BEGIN_RESP answers it and is completed by return (TLM_COMPLETED). Exclusion: no BEGIN_REQ before the last END_REQ.
-/// Answers come in the order of the requests. The initiator owns a request, which stays in place and
-/// unchanged until answered; the memory writes `data` of a read, `response` and `dmi_allowed`.
+/// nb_transport: BEGIN_REQ offers a request; END_REQ, by return (TLM_UPDATED) or later on the backward path, accepts
+/// it; BEGIN_RESP answers it and is completed by return (TLM_COMPLETED). Exclusion rule: no BEGIN_REQ before the last
+/// END_REQ. Requests are answered in order. The initiator owns a request, which stays in place and unchanged until
+/// answered; the memory writes `data` of a read, `response` and `dmi_allowed`.
 struct MemoryProtocol {
     using tlm_payload_type = MemoryRequest;
     using tlm_phase_type = tlm::tlm_phase;

@@ -8,8 +8,8 @@
 
 namespace tessera {
 
-/// An item as the bits on its stream's wires, lowest first, and its annotations, which have no wires. This is what a
-/// unit written in another language sees.
+/// An item as the bits on its stream's wires, lowest first, and its annotations, which have no wires. A unit written in
+/// another language exchanges items in this form.
 struct PackedItem {
     static constexpr std::size_t most_bytes = 448;
     static constexpr std::size_t most_annotations = 4;  // of a triangle with its origin
@@ -44,7 +44,7 @@ class Reader : public datapath::FieldReader {
 
 }  // namespace packed
 
-/// False: a value does not fit its field, and its highest bits are lost.
+/// Returns false if a value does not fit its field; its highest bits are then lost.
 template <class Item>
 [[nodiscard]] bool pack_item(const Item& item, const datapath::Formats& formats, int tag_bits, PackedItem& packed) {
     packed::Writer writer(packed);

@@ -23,8 +23,8 @@ constexpr Parts triangle_edge_parts = 0700;
 constexpr Parts edge_parts = 077700;
 constexpr Parts all_parts = 077777;
 
-/// The parts of a triangle that go down the branch of Calculate New P: what is not known yet and, unless it is
-/// finished, its edges that are not final; of families, the edges that split.
+/// The parts of a triangle that go to Calculate New P: those that are not known yet and, unless the triangle is
+/// finished, the edges that are not final; in the family design, the edges that split.
 constexpr Parts parts_of(const datapath::Triangle& triangle, Work work = Work::triangle) {
     unsigned parts = unsigned{triangle.split} << first_edge_part;
     if (work == Work::triangle)
@@ -39,15 +39,15 @@ constexpr Parts parts_of(const datapath::Triangle& triangle, Work work = Work::t
     return static_cast<Parts>(parts);
 }
 
-/// The parts that go to Tessellation Tests unit `number` of 1 or 3: all vertices and edges; of three units, one edge
-/// and the two vertices it joins.
+/// The parts that go to Tessellation Tests unit `number` of 1 or 3: all vertices and edges or, with three units, one
+/// edge and its two vertices.
 constexpr Parts parts_for_tests(unsigned number, unsigned units) {
     if (units == 1)
         return vertex_parts | edge_parts;
     return static_cast<Parts>(1u << (first_edge_part + number) | 1u << number | 1u << (number + 1) % 3);
 }
 
-/// Of families: the edges that go to a lane of the tests.
+/// In the family design: the edges that go to a lane of the tests.
 constexpr Parts parts_for_lane(unsigned lane, unsigned lanes) {
     unsigned parts = 0;
     for (unsigned part = first_edge_part + lane; part <= last_edge_part; part += lanes)
@@ -60,18 +60,18 @@ constexpr Parts parts_of(const datapath::FamilyEdges& edges) {
     return static_cast<Parts>(((1u << edges.count) - 1) << first_edge_part);
 }
 
-/// The last of some parts.
+/// The last part in a set of parts.
 constexpr Parts last_of(Parts parts) {
     while ((parts & (parts - 1)) != 0)
         parts = static_cast<Parts>(parts & (parts - 1));
     return parts;
 }
 
-/// Names a triangle while it is between Get Triangle and Pass or Tessellate: its pass's number modulo 2^tag_bits
-/// (modules/timing/design.h), enough to distinguish those that can be there at a time.
+/// Identifies a triangle between Get Triangle and Pass or Tessellate: the number of its pass modulo 2^tag_bits
+/// (modules/timing/design.h), enough to distinguish all triangles that can be there at a time.
 using Tag = std::uint32_t;
 
-/// The model's names of a triangle, for waveforms and messages. No hardware has them.
+/// The model's numbers for a triangle, for waveforms and messages. They do not exist in hardware.
 struct Origin {
     std::uint32_t pass = 0;  ///< passes begun before it, modulo 2^32
     std::uint32_t base = 0;  ///< index of the base triangle it descends from
@@ -83,14 +83,14 @@ constexpr void describe_origin(datapath::Fields<Codec>& fields, Any& origin) {
     fields.annotation("base", origin.base);
 }
 
-/// Which part of which triangle an item is.
+/// Identifies the triangle of an item, and the part of it.
 struct PartTag {
     Tag triangle = 0;
     std::uint8_t part = 0;  ///< 0 to 14
     Origin origin;
 
     constexpr Parts bit() const { return static_cast<Parts>(1u << part); }
-    /// Which vertex, normal or edge, 0 to 2.
+    /// The number of the vertex, normal or edge, 0 to 2.
     constexpr unsigned index() const { return part % 3u; }
     constexpr bool is_vertex() const { return part < first_normal_part; }
     constexpr bool is_normal() const { return part >= first_normal_part && part < first_edge_part; }
@@ -104,7 +104,7 @@ constexpr void describe_tag(datapath::Fields<Codec>& fields, Any& tag) {
     describe_origin(fields, tag.origin);
 }
 
-/// An item is a part of a triangle, or else a whole one.
+/// Whether an item is a part of a triangle; otherwise it is a whole triangle.
 template <class Item, class = void>
 constexpr bool is_part = false;
 template <class Item>

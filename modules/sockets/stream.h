@@ -6,15 +6,15 @@
 
 namespace tessera {
 
-/// Protocol of the streams between units: not memory-mapped, hence a traits class of its own. The payload is the item
-/// itself (items.h); the phases are TLM-2.0's; the producer initiates (StreamOutput), the consumer is the target
-/// (StreamInput).
+/// Protocol of the streams between units. Streams are not memory-mapped, hence a traits class of their own. The payload
+/// is the item itself (items.h); the phases are those of TLM-2.0; the producer is the initiator (StreamOutput), the
+/// consumer the target (StreamInput).
 ///
 /// b_transport (functional mode): on return the consumer and everything downstream have finished; `delay` is added to,
 /// never overwritten. The producer owns the payload, which is not written.
 ///
 /// nb_transport (timed mode), two phases: BEGIN_REQ offers one item; END_REQ, by return (TLM_UPDATED) or later on the
-/// backward path, says that the consumer has taken it. Withholding END_REQ is back-pressure. Exclusion: no
+/// backward path, means that the consumer has accepted it. Withholding END_REQ is back-pressure. Exclusion rule: no
 /// second BEGIN_REQ before END_REQ. The payload stays unchanged until END_REQ; the consumer copies it.
 template <class Payload>
 struct Stream {
@@ -22,7 +22,7 @@ struct Stream {
     using tlm_phase_type = tlm::tlm_phase;
 };
 
-/// Reports a breach of that protocol: an SC_ERROR that names the socket, the rule and, with a clock, the cycle.
+/// Reports a violation of the protocol: an SC_ERROR that names the socket, the rule and, with a clock, the cycle.
 [[noreturn]] void stream_protocol_error(const char* socket, const char* rule, const CycleScheduler* clock = nullptr);
 
 /// The module at the other end of a bound socket or port, if the module itself or one of its sockets implements the

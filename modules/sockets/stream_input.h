@@ -12,8 +12,8 @@
 
 namespace tessera {
 
-/// A unit's input. Functional mode: hands b_transport to the unit. Timed mode: a buffer of `depth` items; while it
-/// is full the next item waits and END_REQ is withheld. Checks the producer's phases.
+/// A unit's input. Functional mode: forwards b_transport to the unit. Timed mode: a buffer of `depth` items; while it
+/// is full, the next item waits and END_REQ is withheld. Checks the producer's phases.
 template <class Payload>
 class StreamInput : public tlm::tlm_target_socket<32, Stream<Payload>>,
                     public tlm::tlm_fw_transport_if<Stream<Payload>>,
@@ -25,7 +25,7 @@ class StreamInput : public tlm::tlm_target_socket<32, Stream<Payload>>,
         Socket::bind(static_cast<tlm::tlm_fw_transport_if<Stream<Payload>>&>(*this));
     }
 
-    /// Functional mode: `(unit.*Method)(payload, delay)` does the work.
+    /// Functional mode: `(unit.*Method)(payload, delay)` processes the items.
     template <auto Method, class Unit>
     void register_b_transport(Unit& unit) {
         server_ = &unit;
@@ -43,8 +43,8 @@ class StreamInput : public tlm::tlm_target_socket<32, Stream<Payload>>,
         stalls_ = RandomStalls(stalls, this->name());
     }
 
-    /// Timed mode, for a unit that does nothing until all of its inputs have an item: it is called only then.
-    /// empty_inputs: how many are empty; shared by the inputs, which count it.
+    /// Timed mode, for a unit that does nothing until each of its inputs has an item: it is called only then.
+    /// empty_inputs: the number of empty inputs; a counter shared and maintained by the inputs.
     void waits_for_all(unsigned& empty_inputs) {
         empty_inputs_ = &empty_inputs;
         ++empty_inputs;
@@ -53,9 +53,9 @@ class StreamInput : public tlm::tlm_target_socket<32, Stream<Payload>>,
     bool empty() const { return buffer_.empty(); }
     std::size_t size() const { return buffer_.size(); }
     std::size_t depth() const { return buffer_.capacity(); }
-    /// An item waits to be taken into the buffer.
+    /// True if an item waits to enter the buffer.
     bool holds_back() const { return !pending_.empty(); }
-    /// Timed mode: items so far.
+    /// Timed mode: items accepted so far.
     std::uint64_t taken() const { return taken_; }
     void assign_taken(std::uint64_t taken) { taken_ = taken; }
 

@@ -14,7 +14,7 @@ namespace tessera {
 template <class Payload>
 class StreamInput;
 
-/// A unit's output (timed mode: one item on offer at a time). Checks the consumer's phases. BUSWIDTH means nothing on
+/// A unit's output (timed mode: one item on offer at a time). Checks the consumer's phases. BUSWIDTH has no meaning for
 /// a stream; widths follow from the formats.
 template <class Payload>
 class StreamOutput : public tlm::tlm_initiator_socket<32, Stream<Payload>>,
@@ -26,7 +26,7 @@ class StreamOutput : public tlm::tlm_initiator_socket<32, Stream<Payload>>,
         Socket::bind(static_cast<tlm::tlm_bw_transport_if<Stream<Payload>>&>(*this));
     }
 
-    /// Binds this output to its input in place of bind(), and may insert something: a unit, a fault.
+    /// Binds this output to its input in place of bind(), and can insert a unit or a fault between them.
     using Interposer = std::function<void(StreamOutput& from, StreamInput<Payload>& to)>;
     void interpose(Interposer interposer) { interposer_ = std::move(interposer); }
 
@@ -38,7 +38,7 @@ class StreamOutput : public tlm::tlm_initiator_socket<32, Stream<Payload>>,
             Socket::bind(input);
     }
 
-    /// Timed mode: `unit` is called when a delayed item is taken.
+    /// Timed mode: `unit` is called when a delayed item is accepted.
     void clocked_by(CycleScheduler& clock, CycleProcess& unit) {
         clock_ = &clock;
         unit_ = &unit;
@@ -50,7 +50,7 @@ class StreamOutput : public tlm::tlm_initiator_socket<32, Stream<Payload>>,
             wires_ = {&context.registers.formats, tag_bits_in_use(context.design)};
     }
 
-    /// Functional mode: hands an item over; on return everything downstream has finished.
+    /// Functional mode: sends an item; on return everything downstream has finished.
     void transport(Payload& payload, sc_core::sc_time& delay) {
         if (wires_.formats == nullptr) {
             (*this)->b_transport(payload, delay);
@@ -60,10 +60,10 @@ class StreamOutput : public tlm::tlm_initiator_socket<32, Stream<Payload>>,
         (*this)->b_transport(packed, delay);
     }
 
-    /// Nothing on offer.
+    /// True if nothing is on offer.
     bool free() const { return on_offer_ == nullptr; }
 
-    /// Offers an item, which must stay where it is until free(). True: taken at once.
+    /// Offers an item, which must stay in place until free(). Returns true if it is accepted at once.
     bool send(Payload& payload) {
         if (on_offer_ != nullptr)
             stream_protocol_error(this->name(), "BEGIN_REQ before END_REQ of the item before", clock_);
@@ -81,14 +81,14 @@ class StreamOutput : public tlm::tlm_initiator_socket<32, Stream<Payload>>,
         return false;
     }
 
-    /// Offers an item once and, called again with the same one, waits for it to be taken. True: the consumer has taken
-    /// it; until then it must stay where it is.
+    /// Offers an item; call again with the same item until it is accepted. Returns true once the consumer has accepted
+    /// it; until then it must stay in place.
     bool deliver(Payload& payload) {
         delivering_ = delivering_ ? !free() : !send(payload);
         return !delivering_;
     }
 
-    /// The module that takes the items, and can block this one.
+    /// The module that accepts the items, and can block this one.
     const sc_core::sc_object* consumer() const {
         if (consumer_ == nullptr)
             consumer_ = module_behind(this->get_base_port().get_interface());
@@ -96,7 +96,7 @@ class StreamOutput : public tlm::tlm_initiator_socket<32, Stream<Payload>>,
     }
 
   private:
-    /// Null: items are handed over as they are.
+    /// Null: items are passed on without packing.
     struct Wires {
         const datapath::Formats* formats = nullptr;
         int tag_bits = 0;
@@ -129,7 +129,7 @@ class StreamOutput : public tlm::tlm_initiator_socket<32, Stream<Payload>>,
     Interposer interposer_;
     Wires wires_;
     Payload packed_{};
-    bool delivering_ = false;                               // deliver() has yet to say that its item is taken
+    bool delivering_ = false;                               // deliver() has not yet returned true for its item
     mutable const sc_core::sc_object* consumer_ = nullptr;  // looked up once: it is slow
 };
 

@@ -11,17 +11,17 @@
 
 namespace tessera {
 
-/// Sends one item to one or several consumers. Each gets the fields it needs and takes them when it can; the item is
-/// delivered when all have.
+/// Sends one item to one or several consumers. Each receives the fields it needs and accepts them when it can. The item
+/// is delivered when all have accepted.
 template <class Item>
 class Fork {
   public:
     static constexpr std::size_t most = 4;
 
-    /// The whole item; only for these parts.
+    /// Adds an output for the whole item, only for these parts.
     void add(StreamOutput<Item>& output, Parts only = all_parts) { add<Item>(output, nullptr, only); }
 
-    /// `select` makes the consumer's item; only for these parts.
+    /// Adds an output whose item `select` makes, only for these parts.
     template <class Payload>
     void add(StreamOutput<Payload>& output, Payload (*select)(const Item&), Parts only) {
         if (count_ == most) {
@@ -32,7 +32,7 @@ class Fork {
         only_[count_++] = only;
     }
 
-    /// Timed mode: offers the item on those of its outputs that have not taken it. True: all have.
+    /// Timed mode: offers the item on those of its outputs that have not delivered it. Returns true once all have.
     bool deliver(Item& item) {
         bool all = true;
         for (std::size_t k = 0; k < count_; ++k) {
@@ -49,7 +49,7 @@ class Fork {
         return all;
     }
 
-    /// Functional mode: all outputs start at the same time; on return `delay` is that of the last.
+    /// Functional mode: all outputs start at the same time; on return `delay` is that of the last to finish.
     void transport(Item& item, sc_core::sc_time& delay) {
         const sc_core::sc_time start = delay;
         for (std::size_t k = 0; k < count_; ++k) {
@@ -61,7 +61,7 @@ class Fork {
         }
     }
 
-    /// The first consumer that has not taken its offer; null: none.
+    /// The first consumer that has not accepted its item; null: none.
     const sc_core::sc_object* blocked_by() const {
         for (std::size_t k = 0; k < count_; ++k)
             if (const sc_core::sc_object* consumer = to_[k]->blocked_by())
@@ -114,7 +114,7 @@ class Fork {
     std::array<std::unique_ptr<Branch>, most> to_;
     std::array<Parts, most> only_{};
     std::size_t count_ = 0;
-    unsigned taken_ = 0;  // of the item that is being delivered
+    unsigned taken_ = 0;  // outputs that have delivered the item under way, one bit each
 };
 
 }  // namespace tessera

@@ -6,8 +6,8 @@
 
 namespace tessera {
 
-/// State that a unit keeps for each of a few triangles, found by the triangle's tag, in order of arrival: a small
-/// content-addressed memory. It grows in functional mode, where triangles can overtake one another.
+/// State that a unit keeps for each of a few triangles, in order of arrival and looked up by the triangle's tag: a
+/// small content-addressable memory. It grows in functional mode, where triangles can overtake one another.
 template <class State>
 class PerTriangle {
   public:
@@ -17,7 +17,7 @@ class PerTriangle {
     bool full() const { return entries_.full(); }
     std::size_t size() const { return entries_.size(); }
 
-    /// Null: no state for this triangle.
+    /// Returns null if there is no state for this triangle.
     State* find(Tag tag) {
         for (std::size_t k = 0; k < entries_.size(); ++k)
             if (entries_.at(k).tag == tag)
@@ -26,7 +26,7 @@ class PerTriangle {
     }
     const State* find(Tag tag) const { return const_cast<PerTriangle*>(this)->find(tag); }
 
-    /// A place for this triangle, with another's contents: to be overwritten.
+    /// Opens a place for this triangle. It still has its old contents, which the caller must overwrite.
     State& open(Tag tag) {
         if (full())
             entries_.grow();
@@ -34,7 +34,7 @@ class PerTriangle {
         entry.tag = tag;
         return entry.state;
     }
-    /// A new place is a new State.
+    /// A newly opened place holds a default State.
     State& find_or_open(Tag tag) {
         State* found = find(tag);
         return found != nullptr ? *found : open(tag) = State{};
@@ -42,7 +42,7 @@ class PerTriangle {
 
     /// The k-th oldest.
     State& at(std::size_t k) { return entries_.at(k).state; }
-    /// Not when empty.
+    /// Must not be empty.
     State& oldest() { return entries_.front().state; }
     const State& oldest() const { return entries_.front().state; }
     void close_oldest() { entries_.pop(); }

@@ -4,21 +4,21 @@
 
 namespace tessera {
 
-/// The table entries that an item needs: byte addresses, grouped in requests, made one after another. Filled in by the
-/// unit; empty: none.
+/// The table entries that an item needs: byte addresses, grouped in requests that are made one after another. Filled in
+/// by the unit; empty if the item needs no entries.
 class Reads {
   public:
     static constexpr unsigned most_requests = 3;
     static constexpr unsigned most_entries = 27;
 
-    /// Which of the unit's ports the requests added next are made through, in the order of reads_through(); at first 0.
+    /// Selects the port for the requests added next. Ports are numbered in the order of reads_through(); initially 0.
     void through(unsigned port) { port_ = port; }
-    /// One more request, for one entry.
+    /// Adds a request for one entry.
     void add(std::uint64_t address) {
         add_request();
         add_entry(address);
     }
-    /// One more request, for the 1 to 9 entries that are added next (a gather).
+    /// Adds a request for the 1 to 9 entries that are added next (a gather).
     void add_request() {
         ports_[requests_] = static_cast<std::uint8_t>(port_);
         first_[requests_++] = entries_;
@@ -30,7 +30,7 @@ class Reads {
     unsigned last_port() const { return port_; }
     unsigned requests() const { return requests_; }
     unsigned entries() const { return entries_; }
-    /// Entries of a request; of all, their addresses in order.
+    /// The number of entries in a request; addresses() has those of all requests in order.
     unsigned count(unsigned request) const {
         return (request + 1 < requests_ ? first_[request + 1] : entries_) - first_[request];
     }
@@ -45,10 +45,10 @@ class Reads {
     std::array<std::uint64_t, most_entries> address_;
 };
 
-/// Told what a unit reads for each of its items, in functional mode.
+/// Receives the reads of each item of a unit, in functional mode.
 class ReadObserver {
   public:
-    /// part: of a triangle, 0 to 14.
+    /// part: the part of a triangle, 0 to 14.
     virtual void read(unsigned part, const Reads& reads) = 0;
     virtual ~ReadObserver() = default;
 };

@@ -142,7 +142,7 @@ void Signals::unit(const char* name, const sc_core::sc_object* object) {
         value(name, UnitNumbers::bits, declaring_ ? 0 : numbers_.of(object));
 }
 
-/// No pulse before the traced cycles.
+/// There is no pulse before the traced cycles.
 void Signals::pulse_or_level(const char* name, bool pulse, bool level) {
     const Name signal{inner_scope_, name, "", -1};
     if (declaring_)

@@ -12,19 +12,19 @@
 
 namespace tessera {
 
-/// Numbers of units in waveforms, the same in every design, so that waveforms/units.txt can name them.
+/// The numbers of units in waveforms. They are the same in every design, so that waveforms/units.txt can name them.
 class UnitNumbers {
   public:
     struct Entry {
         unsigned number;
-        const char* name;  ///< SystemC name without the top module's
+        const char* name;  ///< SystemC name without that of the top module
     };
     static const std::vector<Entry>& all();
     static constexpr unsigned bits = 7;
     static constexpr unsigned nobody = 0;
     static constexpr unsigned other = 127;  ///< not in all()
 
-    /// By its name, which is looked up once per object.
+    /// The number of a unit, by its name. The name is looked up once per object.
     unsigned of(const sc_core::sc_object* object);
 
   private:
@@ -32,10 +32,10 @@ class UnitNumbers {
 };
 
 /// One unit's signals in a waveform file. Unit::trace_signals is called once to declare them, then at the end of each
-/// traced cycle in which the unit was called, to show their values. A signal is found by its name and scope, and keeps
-/// its value where a call is omitted; an undeclared one is an SC_ERROR.
+/// traced cycle in which the unit was called, to show their values. A signal is identified by name and scope, and keeps
+/// its value if a call is omitted; an undeclared signal is an SC_ERROR.
 ///
-/// Signals stand in the unit's own scope unless a scope within it is given.
+/// Signals are in the unit's own scope unless a scope within it is given.
 class Signals {
   public:
     Signals(SignalSink& sink, UnitNumbers& numbers, std::string scope)
@@ -46,7 +46,7 @@ class Signals {
         declaring_ = declaring;
         next_ = 0;
     }
-    /// False: shows the state before the first traced cycle, and nothing pulses.
+    /// Until this is called, the state before the first traced cycle is shown, without pulses.
     void set_running() { running_ = true; }
     bool running() const { return running_; }
 
@@ -57,16 +57,16 @@ class Signals {
             sink_.set(find({inner_scope_, name, "", -1}).signal, value);
     }
     void flag(const char* name, bool value) { this->value(name, 1, value ? 1 : 0); }
-    /// One cycle long when `count` has changed since the last call.
+    /// Pulses for one cycle if `count` has changed since the last call.
     void pulse(const char* name, std::uint64_t count) { pulse_or_level(name, changed(name, count), false); }
 
-    /// Whether `value` differs from that of the last call with this name (0 before the first): something new came.
+    /// Whether `value` differs from that of the last call with this name (0 before the first).
     bool changed(const char* name, std::uint64_t value);
-    /// For signals that hold their values unless `known`: whether to show them now. They are declared in any case.
+    /// For signals that hold their values while `known` is false: whether to call them now. Always true when declaring.
     bool when(bool known) const { return declaring_ || known; }
 
-    /// A stream's input: valid, something is offered; ready, something is taken; stalled, something waits when the
-    /// cycle ends; waiting, items in the buffer. Several transfers in one cycle show as one.
+    /// A stream's input. valid: an item is offered; ready: an item is accepted; stalled: an item still waits at the end
+    /// of the cycle; waiting: items in the buffer. Several transfers in one cycle show as one.
     template <class Input>
     void input(const Input& input, const char* scope = "") {
         inner_scope_ = scope;
@@ -79,10 +79,10 @@ class Signals {
         inner_scope_ = "";
     }
 
-    /// A number for another unit, by name in waveforms/units.txt.
+    /// Another unit, shown as its number in waveforms/units.txt.
     void unit(const char* name, const sc_core::sc_object* object);
 
-    /// Widths are those of the largest configuration, so that a save file fits all.
+    /// Widths are those of the largest configuration, so that one save file fits all.
     void direction(const char* name, const datapath::Direction& n) { fields().direction(name, n, ""); }
     void screen(const char* name, const datapath::ScreenPosition& s) { fields().screen(name, s, ""); }
 
@@ -128,7 +128,7 @@ class Signals {
     Declared& find(const Name& name);
     datapath::Fields<Signals> fields() { return {*this, formats}; }
 
-    static constexpr datapath::Formats formats{};  // whose widths are not looked at
+    static constexpr datapath::Formats formats{};  // its widths are not used
 
     SignalSink& sink_;
     UnitNumbers& numbers_;
@@ -137,7 +137,7 @@ class Signals {
     bool declaring_ = true;
     bool running_ = false;
     std::vector<Declared> declared_;
-    std::size_t next_ = 0;  // of these: where the search begins, for calls mostly come in the order of declaration
+    std::size_t next_ = 0;  // where the search in declared_ begins: calls are mostly in the order of declaration
 };
 
 }  // namespace tessera

@@ -14,13 +14,13 @@ namespace tessera {
 
 class MemoryPort;
 
-/// A unit that takes an item, reads table entries for it (or none), works on it, and passes it on. A derived unit names
-/// its sockets once and implements the functions below; both modes run the same functions.
+/// A unit that accepts an item, reads any table entries it needs, processes it, and passes the result on. A derived
+/// unit declares its sockets once and implements the functions below; both modes run the same functions.
 ///
 /// Timed mode: an item starts when the interval is over, a register stage is free and the memory has accepted the
-/// requests of the item before. It is finished a latency after its start or, if it reads, after its last answer, and
-/// leaves in order. Register stages: ceil((latency + the memory's latency) / interval), so that neither holds anything
-/// up. Functional mode: reads, works on the item, adds the latency, and hands the result on.
+/// requests of the previous item. It is finished a latency after its start or, if it reads, after its last answer.
+/// Items leave in order. There are ceil((latency + the memory's latency) / interval) register stages, so that neither
+/// latency reduces throughput. Functional mode: reads, processes the item, adds the latency, and passes the result on.
 template <class In, class Out>
 class Stage : public Unit {
   public:
@@ -32,13 +32,14 @@ class Stage : public Unit {
     void observe_reads(ReadObserver* observer) { read_observer_ = observer; }
 
   protected:
-    /// servers: pipelines side by side that take turns. memory_latency: of the table it reads.
+    /// servers: parallel pipelines, used round-robin. memory_latency: of the table that the unit reads.
     Stage(const sc_core::sc_module_name& name, const UnitContext& context, const UnitTiming& timing,
           unsigned servers = 1, unsigned memory_latency = 0);
     ~Stage() override;
 
-    /// To be called in a derived unit's constructor: its input; each output, what it gets of a result, and the parts
-    /// that it is for; the ports it reads through, if it does (most_requests: of one item through this port).
+    /// Call these in the derived unit's constructor: for its input; for each output, with the function that makes its
+    /// payload from a result and the parts that it is for; for each port that it reads through (most_requests: the most
+    /// requests that one item makes through this port).
     void takes_from(const UnitContext& context, StreamInput<In>& input);
     void delivers_to(const UnitContext& context, StreamOutput<Out>& output, Parts only = all_parts);
     template <class Payload>
@@ -47,19 +48,19 @@ class Stage : public Unit {
     void reads_through(MemoryPort& port, unsigned most_requests);
     void may_wait() { may_wait_ = true; }
 
-    /// For a unit that calls may_wait() in its constructor. False: the item waits for another input; in functional
-    /// mode that is an error.
+    /// For a unit that calls may_wait() in its constructor. Returns false if the item waits for another input; in
+    /// functional mode that is an error.
     virtual bool may_start(const In&) const { return true; }
-    /// The unit that provides it; functional mode: when it came.
+    /// The unit that drives this other input; in functional mode, the time at which its data arrived.
     virtual const sc_core::sc_object* awaited_unit() const { return nullptr; }
     virtual sc_core::sc_time may_start_after(const In&) const { return sc_core::SC_ZERO_TIME; }
 
-    /// The entries an item needs.
+    /// Determines the entries that an item needs.
     virtual void reads(const In&, Reads&) const {}
-    /// The unit's work on an item and the entries read for it; returns what is passed on.
+    /// Processes an item with the entries read for it, and returns the result.
     virtual Out process(const In& item, const Entries& entries) = 0;
 
-    /// Signals beside the items' own fields: of an item that started, and of one that is finished.
+    /// Signals in addition to the items' fields: for an item that has started, and for one that has been processed.
     virtual void trace_started(Signals&, const In&) const {}
     virtual void trace_processed(Signals&, const In&, const Out&) const {}
 

@@ -15,11 +15,10 @@ namespace tessera {
 
 // The implementation of stage.h. Include it where a Stage is instantiated.
 
-/// What a stage is made of.
+/// The implementation of a stage.
 template <class In, class Out>
 struct Stage<In, Out>::Machinery {
-    /// An item under way: its requests, how many of them have been answered, and of each its port and the entries that it
-    /// asks for.
+    /// An item under way: the number of its requests and of those answered, and the port and number of entries of each.
     struct Slot {
         In item{};
         Out result{};
@@ -34,7 +33,7 @@ struct Stage<In, Out>::Machinery {
     Machinery(const UnitTiming& timing, unsigned pipelines, unsigned memory_latency)
         : servers(pipelines), pipeline(timing, pipelines, memory_latency) {}
 
-    /// Makes as many of the started items' requests as the memories accept. True: all.
+    /// Makes the requests of the item started last while the memories accept them. Returns true once all are accepted.
     bool ask() {
         for (; asked < reads.requests(); ++asked) {
             MemoryPort& port = *ports[reads.port(asked)];
@@ -46,25 +45,25 @@ struct Stage<In, Out>::Machinery {
         return !ports[0]->on_offer() && (ports[1] == nullptr || !ports[1]->on_offer());
     }
 
-    /// The port through which the first item's next answer comes.
+    /// The port that receives the first item's next answer.
     const MemoryPort& awaited() const { return *ports[pipeline.front().port[pipeline.front().answered]]; }
 
-    /// Past the items whose answers have all come.
+    /// Skips the items whose answers have all arrived.
     void skip_processed() {
         while (waiting < pipeline.size() && pipeline.at(waiting).processed())
             ++waiting;
     }
 
     const unsigned servers;
-    std::array<MemoryPort*, 2> ports{};  // none: the unit reads nothing
+    std::array<MemoryPort*, 2> ports{};  // null: the unit reads nothing
     Fork<Out> fork;
     ElasticPipeline<Slot> pipeline;
     Reads reads;                 // of the item started last
-    unsigned asked = 0;          // of these requests, made
-    unsigned asked_entries = 0;  // and of the entries
-    Entries entries{};           // that have come for the first item that waits for any
-    unsigned come = 0;           // so many
-    std::size_t waiting = 0;     // the first item whose answers have not all come
+    unsigned asked = 0;          // number of these requests made
+    unsigned asked_entries = 0;  // and of their entries
+    Entries entries{};           // that have arrived for the first item that waits for entries
+    unsigned come = 0;           // number of these entries
+    std::size_t waiting = 0;     // the first item whose answers have not all arrived
 };
 
 template <class In, class Out>
@@ -167,7 +166,7 @@ void Stage<In, Out>::start(std::uint64_t cycle) {
     input_->pop();
 }
 
-/// In the order of the items and of each item's requests, whichever port they go through.
+/// Takes answers in the order of the items and of each item's requests, whichever port they use.
 template <class In, class Out>
 void Stage<In, Out>::take_answers(std::uint64_t cycle) {
     Machinery& m = *machinery_;
@@ -246,8 +245,8 @@ std::string Stage<In, Out>::describe_contents() const {
     return listed(text, input_->holds_back() ? "one waiting at the input" : "");
 }
 
-/// Shows, as `in`, the item started last and, as `out`, the result of the one worked on last; of a unit that reads,
-/// besides, the request made last, and how many requests and reads there were.
+/// Shows the item started last as `in` and the result of the item processed last as `out`; for a unit that reads, also
+/// the last request and the numbers of requests and reads.
 template <class In, class Out>
 void Stage<In, Out>::trace_signals(Signals& signals) const {
     const Machinery& m = *machinery_;

@@ -13,29 +13,29 @@ namespace tessera {
 
 class Signals;
 
-/// The item a unit began last, as the timeline names it.
+/// The item that a unit began last, for the timeline.
 struct Begun {
-    std::uint64_t count = 0;  ///< items begun; 0: none is named
+    std::uint64_t count = 0;  ///< items begun; 0: the unit names none
     Origin triangle;
-    Parts parts = all_parts;  ///< the one part, or all: the whole triangle
+    Parts parts = all_parts;  ///< a single part; all_parts: the whole triangle
 };
 
-/// A box of the paper's figures 7 and 8, or a memory: a module on the clock, with a record of its state in each cycle.
+/// A box of the paper's figures 7 and 8, or a memory: a clocked module that records its state in each cycle.
 class Unit : public CycleProcess, public sc_core::sc_module {
   public:
     const Activity& activity() const { return activity_; }
     Activity& activity() { return activity_; }
 
-    /// For the deadlock report: what is in the unit and waits at its inputs, in words; empty: nothing.
+    /// For the deadlock report: the items in the unit and at its inputs, in words; an empty string if there are none.
     virtual std::string describe_contents() const = 0;
 
-    /// Cycles that the unit's work needs at its initiation interval, or at a memory's ports.
+    /// Cycles that the unit's work occupies at its initiation interval or, for a memory, at its ports.
     virtual std::uint64_t occupied_cycles() const = 0;
 
     bool idle() const { return activity_.level() == 0; }
 
-    /// Declares the unit's signals, or shows their values at the end of a cycle (modules/stage/signals.h). Of every
-    /// unit: its state, who blocks it or is waited for, and the items in it.
+    /// Declares the unit's signals, or shows their values at the end of a cycle (modules/stage/signals.h). For every
+    /// unit: its state, the unit that blocks it or that it waits for, and the items in it.
     virtual void trace_signals(Signals& signals) const;
 
     /// Valid in a cycle in which the unit begins an item, and while it holds any. Memories and the Triangle Queue,

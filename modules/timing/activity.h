@@ -13,9 +13,9 @@ namespace tessera {
 /// Called at the end of each stretch of cycles that a unit spends in one state.
 class ActivityObserver {
   public:
-    /// [begin, end); by: the module that blocks or is waited for; may be null.
+    /// [begin, end); by: the module that blocks the unit or that it waits for; may be null.
     virtual void stretch(State state, const sc_core::sc_object* by, std::uint64_t begin, std::uint64_t end) = 0;
-    /// An item came into the unit, or left it.
+    /// An item entered the unit (came) or left it.
     virtual void item(std::uint64_t /*cycle*/, bool /*came*/) {}
     virtual ~ActivityObserver() = default;
 };
@@ -23,7 +23,7 @@ class ActivityObserver {
 /// Counts a unit's cycles by state, and the items in it.
 class Activity {
   public:
-    /// The state at the end of `cycle`, which lasts until another is set. Within one cycle the last call counts.
+    /// Sets the state at the end of `cycle`. It lasts until another is set. The last call in a cycle counts.
     void set(std::uint64_t cycle, State state, const sc_core::sc_object* by = nullptr) {
         if (state != state_ || by != by_) {
             close(cycle);
@@ -53,14 +53,14 @@ class Activity {
         integrate(cycle);
     }
 
-    /// The present stretch ends at `cycle` and another like it begins.
+    /// Ends the present stretch at `cycle` and begins another in the same state.
     void split(std::uint64_t cycle) { close(cycle); }
 
     State state() const { return state_; }
     const sc_core::sc_object* by() const { return by_; }
     std::uint64_t cycles_in(State state) const { return cycles_[static_cast<std::size_t>(state)]; }
 
-    /// Cycles blocked by, or waiting for, one other: what `set` named.
+    /// Cycles in which the unit was blocked by, or waited for, one particular module, as given to `set`.
     struct Share {
         State state = State::starved;
         const sc_core::sc_object* by = nullptr;
@@ -69,7 +69,7 @@ class Activity {
     static constexpr std::size_t most_shares = 12;
     const std::array<Share, most_shares>& shares() const { return shares_; }
 
-    /// The figures of a run that was not called cycle by cycle (modules/conductor.h).
+    /// The statistics of a run that was not simulated cycle by cycle (modules/conductor.h).
     struct Figures {
         std::array<std::uint64_t, states> cycles{};
         std::array<Share, most_shares> shares{};
@@ -88,7 +88,8 @@ class Activity {
     std::uint64_t items_in() const { return items_in_; }
     std::uint64_t items_out() const { return items_out_; }
     std::uint64_t level() const { return level_; }
-    /// At the end of a cycle, at least one if any came: the order of a cycle's calls does not change it.
+    /// Most items at the end of a cycle; at least one if any item entered. Independent of the order of calls in a
+    /// cycle.
     std::uint64_t high_water_mark() const {
         return std::max({high_water_mark_, level_, std::min(items_in_, std::uint64_t{1})});
     }
@@ -134,7 +135,7 @@ class Activity {
     std::uint64_t since_ = 0;
     std::array<std::uint64_t, states> cycles_{};
     std::array<Share, most_shares> shares_{};
-    std::size_t recent_ = 0;  // of these, the one that was added to last
+    std::size_t recent_ = 0;  // the share that was added to last
     std::uint64_t items_in_ = 0;
     std::uint64_t items_out_ = 0;
     std::uint64_t level_ = 0;

@@ -54,7 +54,7 @@ void CycleScheduler::wake_far(const CycleProcess& unit, std::uint64_t cycle) {
 }
 
 void CycleScheduler::wake_from_outside(const CycleProcess& unit, std::uint64_t cycle) {
-    // The table counts from the cycle that was called last.
+    // The table starts at the last cycle in which processes were called.
     cycle = std::max(cycle, first_cycle_not_before_now());
     if (cycle - cycle_ < span) {
         const std::uint64_t place = cycle % span;
@@ -111,7 +111,7 @@ bool CycleScheduler::find_next(std::uint64_t& next) const {
     return true;
 }
 
-/// Those that asked for the present cycle, until none is left. Returns who was called, if observed.
+/// Calls the processes that are due in the present cycle until none is left. Returns their bits, if observed.
 template <bool Observed>
 std::uint64_t CycleScheduler::call_due() {
     std::uint64_t called = 0;
@@ -127,7 +127,7 @@ std::uint64_t CycleScheduler::call_due() {
     return called;
 }
 
-/// False: the present cycle is not observed.
+/// Returns false if the present cycle is not observed.
 bool CycleScheduler::begin_observing() {
     if (cycle_ < observed_first_)
         return false;
@@ -140,7 +140,7 @@ bool CycleScheduler::begin_observing() {
     return observer_ != nullptr;
 }
 
-/// Nothing but the next cycle is to happen until it begins, `cycles` from the present one.
+/// Whether nothing else will happen until the next cycle, `cycles` after the present one.
 bool CycleScheduler::may_run_ahead(std::uint64_t cycles) const {
     if (observer_ != nullptr || sc_core::sc_pending_activity_at_current_time())
         return false;
@@ -155,7 +155,7 @@ void CycleScheduler::tick() {
     lag_ = sc_core::SC_ZERO_TIME;
 }
 
-/// False: no further cycle is scheduled.
+/// Returns false if no further cycle is scheduled.
 bool CycleScheduler::run_cycle() {
     cycle_ = next_tick_;
     running_ = true;

@@ -11,7 +11,7 @@ class CycleScheduler;
 
 class CycleProcess;
 
-/// An input of a process where an item may wait; the scheduler admits it.
+/// An input of a process, at which an item may wait until the scheduler admits it.
 class CycleInput {
   public:
     virtual ~CycleInput() = default;
@@ -23,7 +23,7 @@ class CycleInput {
 
     /// Called before each step of its owner while an item waits.
     virtual void admit() = 0;
-    /// Call when an item begins or ceases to wait.
+    /// Call when an item begins to wait, and when it no longer waits.
     inline void set_waiting(bool waiting);
 
   private:
@@ -40,7 +40,7 @@ class CycleProcess {
     /// cause must change nothing.
     virtual void step() = 0;
 
-    /// `input` must live as long as its owner is stepped. Call once for each input.
+    /// `input` must exist as long as its owner is stepped. Call once for each input.
     void add_input(CycleInput& input) {
         input.owner_ = this;
         input.next_ = std::exchange(first_input_, &input);
@@ -67,7 +67,7 @@ class CycleProcess {
 
     CycleInput* first_input_ = nullptr;
     unsigned waiting_inputs_ = 0;
-    std::uint64_t bit_ = 0;  // its place among the attached
+    std::uint64_t bit_ = 0;  // its place among the attached processes
 };
 
 void CycleInput::set_waiting(bool waiting) {
@@ -78,14 +78,14 @@ void CycleInput::set_waiting(bool waiting) {
 /// Observes the cycles in which a process was called; for tracing.
 class CycleObserver {
   public:
-    /// Before the calls of the first observed cycle.
+    /// Called before the processes of the first observed cycle.
     virtual void begin(std::uint64_t cycle) = 0;
     /// called: the bits (CycleScheduler::bit_of) of the processes called.
     virtual void end_of_cycle(std::uint64_t cycle, std::uint64_t called) = 0;
     virtual ~CycleObserver() = default;
 };
 
-/// A clock's period. SC_ERROR, naming the instance, if it is no multiple of SystemC's time resolution.
+/// A clock's period. SC_ERROR, naming the instance, if it is not a multiple of SystemC's time resolution.
 sc_core::sc_time clock_period(const char* instance, unsigned picoseconds);
 
 sc_core::sc_time first_rising_edge(const sc_core::sc_clock& clock);
@@ -94,12 +94,12 @@ sc_core::sc_time first_rising_edge(const sc_core::sc_clock& clock);
 ///
 /// Within a cycle processes are called in the order of attachment: attach downstream units first, so that a place
 /// freed in a cycle is filled in the same cycle. The simulation is then the same on every kernel. One SC_METHOD serves
-/// all: a wake-up costs a bit in a table, not an event.
+/// all processes: a wake-up sets a bit in a table instead of notifying an event.
 ///
-/// Capacity: 64 processes. Nothing scheduled: the run is finished, or in a deadlock.
+/// Capacity: 64 processes. If nothing is scheduled, the run is finished or in a deadlock.
 class CycleScheduler : public sc_core::sc_module {
   public:
-    /// first_edge: when cycle 0 begins.
+    /// first_edge: the time at which cycle 0 begins.
     CycleScheduler(const sc_core::sc_module_name& name, const sc_core::sc_time& period,
                    const sc_core::sc_time& first_edge = sc_core::SC_ZERO_TIME);
 
@@ -129,8 +129,8 @@ class CycleScheduler : public sc_core::sc_module {
         }
     }
 
-    /// For a change that an observer may show but that `unit` cannot act upon: calls it in the present cycle if that is
-    /// observed.
+    /// Calls `unit` in the present cycle if that cycle is observed: for a change that an observer may show but that the
+    /// unit does not react to.
     void wake_if_observed(const CycleProcess& unit) {
         if (observer_ != nullptr && cycle_ >= observed_first_)
             wake(unit);
@@ -148,7 +148,7 @@ class CycleScheduler : public sc_core::sc_module {
     }
     const sc_core::sc_time& period() const { return period_time_; }
 
-    /// Nothing is scheduled.
+    /// True if nothing is scheduled.
     bool idle() const { return !running_ && !scheduled_; }
 
     /// Notified at the end of a cycle after which nothing is scheduled, or the clock has halted.
@@ -158,23 +158,24 @@ class CycleScheduler : public sc_core::sc_module {
     void halt() { halted_ = true; }
     bool halted() const { return halted_; }
 
-    /// While the kernel has nothing else to do, runs up to `most` further cycles without returning to it: simulated time
-    /// stands still meanwhile, and a stop takes effect afterwards. For a simulation in which the machine's units alone
-    /// act upon time. Not while an observer is attached.
+    /// While the kernel has nothing else to do, runs up to `most` further cycles without returning to it. Meanwhile
+    /// simulated time does not advance; a stop takes effect afterwards. For simulations in which only the machine's
+    /// units depend on time. Has no effect while an observer is attached.
     void run_ahead(unsigned most) { most_ahead_ = most; }
 
-    /// Call when work is completed (a triangle decided, or lit). The clock halts after processes were called in more
-    /// than `most` cycles (0: no limit) without it. Cycles without calls do not count: a latency, however long, ends.
+    /// Call progress() when work is completed (a triangle decided, or lit). The clock halts once processes have been
+    /// called in more than `most` cycles (0: no limit) without progress. Cycles without calls do not count, since every
+    /// latency ends.
     void progress() { cycles_without_progress_ = 0; }
     void halt_without_progress_for(std::uint64_t most) { most_without_progress_ = most; }
     std::uint64_t most_without_progress() const { return most_without_progress_; }
-    /// It halted for that reason.
+    /// True if the clock halted for lack of progress.
     bool stalled() const { return stalled_; }
 
     /// The clock halted because a scheduled cycle begins after the end of SystemC's time, 2^64 - 1 time steps.
     bool out_of_time() const { return out_of_time_; }
 
-    /// From cycle `first` to cycle `last`; outside these an observer costs nothing.
+    /// Observes cycles `first` to `last`; outside these an observer costs nothing.
     void observe(CycleObserver* observer, std::uint64_t first = 0, std::uint64_t last = UINT64_MAX) {
         observer_ = observer;
         observed_first_ = first;
@@ -184,7 +185,7 @@ class CycleScheduler : public sc_core::sc_module {
     /// The process's bit in what an observer receives.
     static std::uint64_t bit_of(const CycleProcess& unit) { return unit.bit_; }
 
-    /// SC_ERROR when one cycle takes more calls than this: a combinational loop.
+    /// SC_ERROR if one cycle takes more calls than this: a combinational loop.
     static constexpr unsigned calls_in_a_cycle = 100'000;
 
   private:
@@ -214,13 +215,13 @@ class CycleScheduler : public sc_core::sc_module {
     sc_core::sc_time period_time_;
     sc_core::sc_time first_edge_;
     std::uint64_t period_;
-    std::uint64_t most_cycles_ = 0;            // that begin within SystemC's time
-    std::array<sc_core::sc_time, 16> delays_;  // of so many cycles: sc_time is slow to make
+    std::uint64_t most_cycles_ = 0;            // cycles that begin within SystemC's time
+    std::array<sc_core::sc_time, 16> delays_;  // of 0, 1, ... cycles: sc_time is slow to construct
     sc_core::sc_event tick_event_{"tick_event"};
     sc_core::sc_event quiet_{"quiet"};
     std::vector<CycleProcess*> units_;
-    std::array<std::uint64_t, span> due_{};            // by cycle modulo span: one bit a unit
-    std::array<std::uint64_t, span / 64> occupied_{};  // one bit a cycle: due_ is not zero
+    std::array<std::uint64_t, span> due_{};            // by cycle modulo span: one bit per unit
+    std::array<std::uint64_t, span / 64> occupied_{};  // one bit per cycle: due_ is not zero
     std::vector<Far> far_;                             // a heap, earliest first
     std::uint64_t due_now_ = 0;
     std::uint64_t cycle_ = 0;

@@ -18,17 +18,17 @@ struct QueueDesign {
     std::uint64_t off_chip_triangles = std::uint64_t{1} << 20;  ///< places in off-chip memory
 };
 
-/// What is built, as opposed to what is set before a run (datapath::Registers).
+/// The parameters fixed when the machine is built, as opposed to those set before a run (datapath::Registers).
 struct Design {
     Transport transport = Transport::blocking;
     Timing timing;
-    /// Of the platform: the machine's cycles begin with its rising edges. Null: every timing.cycle_picoseconds, from 0 on.
+    /// The platform's clock, at whose rising edges cycles begin. Null: every timing.cycle_picoseconds, from time 0.
     const sc_core::sc_clock* clock = nullptr;
     QueueDesign queue;
     Work work = Work::triangle;
     unsigned tests_units = 1;  ///< Tessellation Tests units: 1 or 3
     TestOrder test_order = TestOrder::parallel;
-    unsigned edge_lanes = 1;    ///< of families, tests cheapest first: cheap tests side by side
+    unsigned edge_lanes = 1;    ///< family design, tests cheapest first: parallel lanes of cheap tests
     unsigned normal_tests = 1;  ///< likewise: Normal Tests that share the lanes' edges
     unsigned transform_pipelines = 1;
     /// In functional mode a Conductor (modules/conductor.h) sends the triangles of the host and of the queue.
@@ -37,39 +37,39 @@ struct Design {
 #ifdef NDEBUG
     bool packed_streams = false;
 #else
-    bool packed_streams = true;  ///< each item goes through its packed form: slow, proves that the form is complete
+    bool packed_streams = true;  ///< each item goes through its packed form: slow, but checks that it is complete
 #endif
 };
 
-/// Register stages of a pipeline, all servers together. further_stages: cycles an item spends outside (in a memory)
+/// Register stages of a pipeline, over all servers. further_stages: cycles that an item spends outside (in a memory)
 /// while others follow it.
 constexpr unsigned register_stages(const UnitTiming& timing, unsigned servers = 1, unsigned further_stages = 0) {
     return servers * std::max(1u, (timing.latency + further_stages + timing.interval - 1) / timing.interval);
 }
 
-/// Of the height test's reads: of its table or, of codes, of the displacement map.
+/// Latency of the height test's reads: from its table or, for codes, from the displacement map.
 constexpr unsigned height_test_latency(const Design& design, const datapath::Formats& formats) {
     const Timing& t = design.timing;
     const MemoryTiming& its = t.*kind_of(formats.height_test).table_timing;
-    // where the table overlaps the reads of so many rectangles, with places for their edges
+    // If the table overlaps the reads of `window` rectangles, there are places for their edges.
     const unsigned table = t.read_latency(its) + its.window / 3;
     return height_test_reads_codes(formats) ? std::max(table, t.read_latency(t.displacement_map)) : table;
 }
 
-/// The displacement map on chip is a dual-port memory: Displace Vertex reads one side, the Curvature Test the other.
+/// Whether the displacement map is an on-chip dual-port memory, read by Displace Vertex and by the Curvature Test.
 constexpr bool displacement_map_has_two_sides(const Design& design, const datapath::Formats& formats) {
     return formats.height_test == datapath::HeightTest::curvature && design.timing.displacement_map.cache.bytes == 0;
 }
 
-/// Of Displace Vertex's reads: of the displacement map and, of families, of the normal map.
+/// Latency of Displace Vertex's reads: from the displacement map and, in the family design, from the normal map.
 constexpr unsigned displace_vertex_latency(const Design& design) {
     const Timing& t = design.timing;
     const unsigned map = t.read_latency(t.displacement_map);
     return design.work == Work::family ? std::max(map, t.read_latency(t.normal_map)) : map;
 }
 
-/// Most triangles that have left the queue while no part of them has reached Pass or Tessellate: one in Get Triangle,
-/// and one for each place of the units between. Pass or Tessellate has room for as many to wait for their parts.
+/// Most triangles that have left the queue but of which no part has reached Pass or Tessellate: one in Get Triangle,
+/// and one for each place in the units between. Pass or Tessellate has room for that many to wait for their parts.
 constexpr unsigned triangles_ahead_of_parts(const Design& design) {
     const Timing& t = design.timing;
     return 1 + t.calculate_new_p.buffer + register_stages(t.calculate_new_p) + t.displace_vertex.buffer +
@@ -77,10 +77,10 @@ constexpr unsigned triangles_ahead_of_parts(const Design& design) {
            register_stages(t.transform, design.transform_pipelines) + 1;
 }
 
-/// Wires of a triangle's tag: enough to distinguish all triangles between Get Triangle and Pass or Tessellate: those
+/// Width of a triangle's tag: enough to distinguish all triangles between Get Triangle and Pass or Tessellate: those
 /// that wait there, one that Get Triangle still offers, and those whose parts have begun to arrive.
 constexpr int tag_bits(const Design& design) {
-    // of families one in Tessellation is joined, and one is being tested
+    // In the family design one triangle is being joined in Tessellation, and one is being tested.
     const unsigned triangles = triangles_ahead_of_parts(design) + 1 + design.timing.pass_or_tessellate.buffer +
                                (design.work == Work::family ? 2 : 0);
     int bits = 1;
@@ -89,14 +89,14 @@ constexpr int tag_bits(const Design& design) {
     return bits;
 }
 
-/// The same in a run. In functional mode, where any number of triangles may overtake a waiting one, a tag is
-/// the pass's number itself.
+/// Width of the tag in a run. In functional mode, where any number of triangles may overtake a waiting one, the tag is
+/// the pass number itself.
 constexpr int tag_bits_in_use(const Design& design) {
     return design.transport == Transport::blocking ? 32 : tag_bits(design);
 }
 
-/// What a unit is built from. `registers` must outlive it, and may change between runs; `design` is read while it is
-/// built.
+/// The arguments from which a unit is built. `registers` must outlive the unit, and may change between runs; `design`
+/// is read only while it is built.
 struct UnitContext {
     CycleScheduler& clock;
     const datapath::Registers& registers;

@@ -9,8 +9,8 @@ namespace tessera {
 
 /// How units communicate.
 enum class Transport {
-    blocking,      ///< blocking transport: every result, no cycles (functional mode)
-    non_blocking,  ///< non-blocking transport: the same results, to the cycle (timed mode)
+    blocking,      ///< blocking transport: all results, no cycles (functional mode)
+    non_blocking,  ///< non-blocking transport: the same results, cycle-accurate (timed mode)
 };
 
 /// The order in which the Triangle Queue outputs its triangles.
@@ -19,21 +19,21 @@ enum class TriangleOrder {
     lifo,  ///< depth first: the queue stays short
 };
 
-/// What a full queue does (timed mode).
+/// The behaviour of a full queue (timed mode).
 enum class QueueOverflow {
     spill,  ///< to off-chip memory
-    stall,  ///< holds Tessellation back: a deadlock when the whole pipeline is full
+    stall,  ///< holds Tessellation back: deadlocks when the whole pipeline is full
     error,  ///< halts the clock
 };
 
-/// When an edge's tests are evaluated.
+/// The order in which an edge's tests are evaluated.
 enum class TestOrder {
     parallel,     ///< the paper's: all at once
-    cheap_first,  ///< those without a table first; the others only if the decision still depends on them
+    cheap_first,  ///< tests without a table first; the others only if the decision still depends on them
 };
 
-// The enumerators' names, in job files and as parameters of CCI. One switch per enumeration, so that the compiler refuses
-// an enumerator without a name.
+// The enumerators' names, in job files and as parameters of CCI. One switch per enumeration, so that the compiler
+// refuses an enumerator without a name.
 
 constexpr std::string_view name_of(Transport value) {
     switch (value) {

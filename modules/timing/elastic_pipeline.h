@@ -12,13 +12,13 @@ namespace tessera {
 
 constexpr std::uint64_t never = std::numeric_limits<std::uint64_t>::max();
 
-/// The items in a unit's pipeline, in order: started one an interval, finished a latency later, kept until delivered.
-/// Elastic: while the first cannot leave, others close up behind it, as many as there are register stages,
+/// The items in a unit's pipeline, in order: started one per interval, finished a latency later, kept until delivered.
+/// Elastic: while the first item cannot leave, others close up behind it, up to the number of register stages,
 /// ceil(latency / interval).
 template <class Item>
 class ElasticPipeline {
   public:
-    /// servers: pipelines side by side that take turns. further_stages: cycles an item spends outside (in a memory)
+    /// servers: parallel pipelines, used round-robin. further_stages: cycles that an item spends outside (in a memory)
     /// while others follow it.
     explicit ElasticPipeline(const UnitTiming& timing, unsigned servers = 1, unsigned further_stages = 0)
         : latency_(timing.latency),
@@ -34,7 +34,7 @@ class ElasticPipeline {
 
     bool may_start(std::uint64_t cycle) const { return !full() && cycle >= next_start_[server_]; }
 
-    /// Starts an item, to be filled in. It is finished at cycle + latency, or when `finish` says so.
+    /// Starts an item, to be filled in. It is finished at cycle + latency, or when set by `finish`.
     Item& start(std::uint64_t cycle) {
         next_start_[server_] = cycle + interval_;
         server_ = server_ + 1 == servers_ ? 0 : server_ + 1;
@@ -47,7 +47,7 @@ class ElasticPipeline {
     const Item& front() const { return stages_.front().item; }
     Item& at(std::size_t k) { return stages_.at(k).item; }
     const Item& at(std::size_t k) const { return stages_.at(k).item; }
-    /// The item started last, even if it has left since; before the first, an empty one.
+    /// The item started last, even if it has already left; before the first, an empty one.
     const Item& newest() const { return stages_.back().item; }
     bool front_finished(std::uint64_t cycle) const { return !empty() && stages_.front().finished <= cycle; }
     void finish(std::size_t k, std::uint64_t cycle) { stages_.at(k).finished = cycle; }
@@ -73,8 +73,8 @@ class ElasticPipeline {
     std::uint64_t latency_;
     std::uint64_t interval_;
     std::size_t servers_;
-    std::vector<std::uint64_t> next_start_;  // one a server
-    std::size_t server_ = 0;                 // whose turn it is
+    std::vector<std::uint64_t> next_start_;  // by server
+    std::size_t server_ = 0;                 // the next server
     Ring<Stage> stages_;
 };
 

@@ -8,18 +8,18 @@
 
 namespace tessera {
 
-/// What a design may have in the Summed Height Test's place, with a table of its own: names, figures, and what is read
-/// for an edge. One entry for each datapath::HeightTest, the paper's first.
+/// A test that a design may have as its height test, each with its own table: its names, timing, and reads per edge.
+/// One entry for each datapath::HeightTest, the paper's Summed Height Test first.
 struct HeightTestKind {
-    std::string_view name;  ///< of the key hardware.height_test
+    std::string_view name;  ///< value of the key hardware.height_test
     const char* title;
-    const char* unit;   ///< the modules' names
-    const char* table;  ///< likewise
+    const char* unit;   ///< module name of the unit
+    const char* table;  ///< module name of the table
     UnitTiming Timing::*unit_timing;
     MemoryTiming Timing::*table_timing;
-    unsigned requests;  ///< to the table, unless codes tell
-    unsigned codes;     ///< entries of the displacement map that are read in its place, of a short edge; 0: none
-    bool rectangles;    ///< a request is for the corners of a rectangle; else for one entry
+    unsigned requests;  ///< requests to the table, unless codes are read
+    unsigned codes;     ///< displacement map entries read instead for a short edge; 0: none
+    bool rectangles;    ///< a request reads the corners of a rectangle; otherwise one entry
     unsigned feature;   ///< its bit of the device's register `features`; 0: none
 };
 
@@ -37,7 +37,7 @@ constexpr const HeightTestKind& kind_of(datapath::HeightTest test) {
     return height_test_kinds[static_cast<std::size_t>(test)];
 }
 
-/// Empty: there is no such test.
+/// Returns an empty name if there is no such test.
 constexpr std::string_view name_of(datapath::HeightTest test) {
     const auto number = static_cast<std::size_t>(test);
     return number < height_test_kinds.size() ? height_test_kinds[number].name : std::string_view{};

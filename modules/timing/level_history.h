@@ -5,8 +5,8 @@
 
 namespace tessera {
 
-/// A level over time, in at most 1024 stretches of equal length: the highest level of each. The stretches double when
-/// the run outgrows them, so that its memory and cost do not depend on the run's length.
+/// A level over time: the highest level in each of at most 1024 intervals of equal length. The length doubles when the
+/// run outgrows them, so that memory and cost do not depend on the length of the run.
 class LevelHistory {
   public:
     LevelHistory() { highest_.reserve(most); }

@@ -4,21 +4,21 @@
 
 namespace tessera {
 
-/// An item that was offered and not taken: END_REQ is withheld until there is room and its cycle has come.
+/// An item that was offered and not yet accepted: END_REQ is withheld until there is room and its cycle is reached.
 template <class Item>
 class PendingItem {
   public:
     bool empty() const { return item_ == nullptr; }
-    /// The item may be taken in `cycle`, if there is room.
+    /// True if the item may be accepted in `cycle`, provided there is room.
     bool due(std::uint64_t cycle) const { return item_ != nullptr && due_ <= cycle; }
     std::uint64_t due_cycle() const { return due_; }
 
-    /// Not when another waits. `item` must stay where it is until taken.
+    /// No other item may be waiting. `item` must stay in place until accepted.
     void hold(Item& item, std::uint64_t due) {
         item_ = &item;
         due_ = due;
     }
-    /// Not when empty.
+    /// Must not be empty.
     Item& take() { return *std::exchange(item_, nullptr); }
 
   private:

@@ -4,14 +4,14 @@
 
 namespace tessera {
 
-/// When a channel is made to stall, for tests: each item is held back with a probability, for a random time.
+/// Random stalls of a channel, for tests: each item is held back with a given probability, for a random time.
 struct StallParameters {
     std::uint64_t seed = 0;
     unsigned per_mille = 0;  ///< of the items; 0: never
     unsigned longest = 16;   ///< cycles, at least 1
 };
 
-/// One channel's stalls: a sequence that depends on the seed and the channel's name alone.
+/// The stalls of one channel: a sequence that depends only on the seed and the channel's name.
 class RandomStalls {
   public:
     RandomStalls() = default;

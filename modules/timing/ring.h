@@ -5,8 +5,8 @@
 
 namespace tessera {
 
-/// A queue of fixed capacity, oldest item first. Allocates only when constructed or grown. A popped item stays in its
-/// place until another is pushed there, so items may own storage that is reused. An empty ring restarts at its
+/// A ring buffer of fixed capacity, oldest item first. Allocates only when constructed or grown. A popped item stays in
+/// its place until another is pushed there, so that storage owned by items is reused. An empty ring restarts at its
 /// first place, so that a rarely used one stays in the host's cache.
 template <class Item>
 class Ring {
@@ -18,7 +18,7 @@ class Ring {
     std::size_t size() const { return size_; }
     std::size_t capacity() const { return capacity_; }
 
-    /// Item k, the oldest being 0. At size(): the place that the next push takes.
+    /// Item k, counted from the oldest. at(size()) is the place of the next push.
     Item& at(std::size_t k) { return items_[place(k)]; }
     const Item& at(std::size_t k) const { return items_[place(k)]; }
     Item& front() { return items_[first_]; }
@@ -27,13 +27,13 @@ class Ring {
     Item& back() { return items_[last_]; }
     const Item& back() const { return items_[last_]; }
 
-    /// Not when full. Returns the new item, with the place's old contents: to be overwritten.
+    /// Must not be full. Returns the new item with the old contents of its place, which the caller must overwrite.
     Item& push() { return items_[last_ = place(size_++)]; }
     void push(const Item& item) { push() = item; }
-    /// Not when empty.
+    /// Must not be empty.
     void pop() { first_ = --size_ == 0 ? 0 : place(1); }
 
-    /// At the other ends: a new oldest item; the last one leaves.
+    /// At the other ends: push_front() adds a new oldest item, pop_back() removes the newest.
     Item& push_front() {
         first_ = (first_ == 0 ? capacity_ : first_) - 1;
         ++size_;
@@ -44,7 +44,7 @@ class Ring {
             first_ = 0;
     }
 
-    /// Twice the capacity, at least one; the items stay in their order.
+    /// Doubles the capacity, at least to one; the items keep their order.
     void grow() {
         std::vector<Item> larger(capacity_ == 0 ? 1 : 2 * capacity_);
         for (std::size_t k = 0; k < size_; ++k)

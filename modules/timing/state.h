@@ -4,10 +4,10 @@
 
 namespace tessera {
 
-/// What a unit does in a cycle: exactly one of these, so that their cycles add up to the run's.
+/// The state of a unit in a cycle: exactly one of these, so that their cycles add up to those of the run.
 ///
-///   blocked             a finished item waits for its consumer to take it
-///   busy                not blocked, and an item with all its operands is being worked on
+///   blocked             a finished item waits for its consumer to accept it
+///   busy                not blocked, and an item with all its operands is being processed
 ///   waiting for memory  neither, and an item's table entries are outstanding
 ///   starved             nothing to work on, or an operand is missing (the View Test's screen positions, the other
 ///                       branch in Pass or Tessellate)

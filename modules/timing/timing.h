@@ -12,45 +12,45 @@ struct UnitTiming {
     unsigned buffer = 1;    ///< items that may wait at its input, at least 1
 };
 
-/// Which bank an entry of a table lies in (memories/interleave.h).
+/// The mapping from a table's entries to its banks (memories/interleave.h).
 enum class Interleave {
-    entry,         ///< one entry after another
+    entry,         ///< consecutive entries in consecutive banks
     exclusive_or,  ///< exclusive ORs of bits of its column and row; banks: a power of two
 };
 
 /// A cache in front of a table that lies in off-chip memory.
 struct CacheTiming {
-    unsigned bytes = 0;        ///< 0: none, the table is on chip; less than a line: one line
+    unsigned bytes = 0;        ///< 0: no cache, the table is on chip; less than a line: one line
     unsigned line_bytes = 64;  ///< a line holds as many entries as fit
     unsigned ways = 4;
-    unsigned fills = 16;  ///< lines, and requests that wait for one, at least 1
+    unsigned fills = 16;  ///< lines being filled, and requests that wait for one, at least 1
 };
 
 /// A memory's ports, in cycles.
 struct MemoryTiming {
-    unsigned ports = 1;    ///< entries a cycle, from each bank
+    unsigned ports = 1;    ///< entries per cycle, from each bank
     unsigned banks = 1;    ///< at most 64
     unsigned latency = 1;  ///< from an entry's address to its data
     unsigned width = 0;    ///< bytes a port moves in a cycle; 0: a whole entry
     unsigned buffer = 1;   ///< requests that may wait, at least 1
     Interleave interleave = Interleave::entry;
-    unsigned window = 0;  ///< requests whose reads may overlap; 0: those that find each of their banks free
-    CacheTiming cache{};  ///< with one, ports, banks and latency are the cache's
+    unsigned window = 0;  ///< requests whose reads may overlap; 0: a request waits until each of its banks is free
+    CacheTiming cache{};  ///< if present, ports, banks and latency are those of the cache
 };
 
 /// Off-chip memory, as the Triangle Queue sees it.
 struct OffChipTiming {
     unsigned latency = 40;    ///< cycles from a request's last byte to its answer
-    unsigned bandwidth = 16;  ///< bytes a cycle, both directions together
+    unsigned bandwidth = 16;  ///< bytes per cycle, both directions together
     unsigned buffer = 4;      ///< requests that may wait, at least 1
 
-    /// In which the channel transfers so many bytes.
+    /// Cycles in which the channel transfers this many bytes.
     constexpr std::uint64_t cycles(std::uint64_t bytes) const { return (bytes + bandwidth - 1) / bandwidth; }
 };
 
 /// Clock period and the datasheet figures of every unit and memory. Defaults follow the paper where it states them
-/// (one port on the Summed Height Table: four cycles a rectangle; tests one edge after another). Declared here only:
-/// configuration and reports refer to this.
+/// (one port on the Summed Height Table: four cycles per rectangle; tests one edge after another). Declared only here;
+/// configuration and reports refer to them.
 struct Timing {
     unsigned cycle_picoseconds = 5000;  ///< the clock's period
     UnitTiming get_triangle{1, 1, 1};
@@ -70,9 +70,9 @@ struct Timing {
     UnitTiming tessellation{1, 1, 1};
     UnitTiming triangle_queue{1, 1, 1};
     UnitTiming lighting{4, 1, 1};
-    unsigned results_buffer = 4;  ///< finished tests of an edge that wait for its other tests
+    unsigned results_buffer = 4;  ///< results of a test that wait for the other tests of their edge
     unsigned edges_in_sequence =
-        32;  ///< tests cheapest first: edges from their cheap tests' results on until they leave
+        32;  ///< tests cheapest first: edges between their cheap tests' results and their departure
     MemoryTiming displacement_map;
     MemoryTiming normal_map;
     MemoryTiming summed_height_table;
@@ -82,7 +82,7 @@ struct Timing {
     OffChipTiming off_chip_memory;
     StallParameters stalls;
 
-    /// From a request for a table's entries to its data, if nothing delays it and, with a cache, no line is there.
+    /// Cycles from a request for table entries to their data, if nothing delays it and, with a cache, all lines miss.
     constexpr unsigned read_latency(const MemoryTiming& table) const {
         if (table.cache.bytes == 0)
             return table.latency;

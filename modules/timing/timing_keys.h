@@ -5,7 +5,7 @@
 
 namespace tessera {
 
-/// What a figure may be: least to most, both included.
+/// The range of a parameter, both ends included.
 struct TimingRange {
     unsigned least;
     unsigned most;
@@ -14,7 +14,7 @@ struct TimingRange {
 inline constexpr unsigned most_cycles = 1000000;  // of a latency or interval
 inline constexpr unsigned most_places = 65536;    // of a buffer
 
-/// The three figures of a unit. `unit(timing)` is a reference to its UnitTiming.
+/// Declares the three timing parameters of a unit. `unit(timing)` is a reference to its UnitTiming.
 template <typename Keys, typename Select>
 void declare_unit_keys(const Keys& key, const std::string& leaf, const std::string& name, Select unit,
                        const std::string& besides_latency = "",
@@ -62,10 +62,10 @@ void declare_memory_keys(const Keys& key, const std::string& leaf, const std::st
         name + ": most outstanding fills of its cache, and requests that wait for them");
 }
 
-/// Declares the figures of Timing, as keys of a job file and as parameters of CCI. For each figure one call:
+/// Declares the members of Timing as keys of a job file and as parameters of CCI, with one call for each:
 ///   key.add_number(leaf, member, unit, range, description)
 ///   key.add_choice<Enum>(leaf, member, description)
-/// member(timing) is a reference to it.
+/// member(timing) is a reference to the member.
 template <typename Keys>
 void declare_timing_keys(const Keys& key) {
     key.add_number(

@@ -2,10 +2,10 @@
 
 namespace tessera {
 
-/// What goes round through the Triangle Queue.
+/// The triangles that go through the Triangle Queue.
 enum class Work {
-    triangle,  ///< the paper's: each triangle, to be tested or to be finished
-    family,    ///< triangles that are known to split; their children are tested before they go round
+    triangle,  ///< the paper's: each triangle, to be tested or finished
+    family,    ///< only triangles that are known to split; children are tested before they enter the queue
 };
 
 }  // namespace tessera

@@ -6,16 +6,16 @@
 
 namespace tessera {
 
-/// Calculate New P (paper figure 7): the midpoint of each edge's two positions.
+/// Calculate New P (paper figure 7): the midpoint of the two ends of each edge.
 ///
 /// In:   GeometryOperands.
-/// Out:  BasePoint: of an edge (P_i + P_j) >> 1, likewise t and N, the latter not yet of unit length; vertices and
-///       normals unchanged. Of families N_ij and N'_ij come with the edge. (Decision: t_ij and the mean normal are formed
-///       here as well as in Tessellation Tests, so that the two branches need no stream between them; Pass or
-///       Tessellate checks that they agree.)
+/// Out:  BasePoint: for an edge (P_i + P_j) >> 1, likewise t and N, the latter not yet of unit length; vertices and
+///       normals unchanged. In the family design N_ij and N'_ij arrive with the edge. (Decision: t_ij and the mean
+///       normal are calculated both here and in Tessellation Tests, so that the two branches need no stream between
+///       them; Pass or Tessellate checks that they agree.)
 /// Arithmetic: add, arithmetic shift right by 1.
 /// Timing: one vertex, normal or edge per interval; latency 1, interval 1 by default.
-/// Waits for nothing but its input; held back by Displace Vertex.
+/// Waits only for its input; held back by Displace Vertex.
 class CalculateNewP : public Stage<GeometryOperands, BasePoint> {
   public:
     StreamInput<GeometryOperands> from_get_triangle{"from_get_triangle"};

@@ -11,7 +11,7 @@
 
 namespace tessera {
 
-/// What Pass or Tessellate does in both machines, the paper's (pass_or_tessellate.h) and that of families
+/// Common base of Pass or Tessellate in the paper's design (pass_or_tessellate.h) and in the family design
 /// (families/pass_or_tessellate.h): decides per edge, and culls finished triangles that face away.
 class DecidingUnit : public Unit {
   public:
@@ -19,23 +19,23 @@ class DecidingUnit : public Unit {
 
     /// Every triangle whose edges have been decided: for the scoreboard.
     tlm::tlm_analysis_port<datapath::TrianglePass> decided{"decided"};
-    /// Every finished triangle, culled ones too: for the mesh monitor.
+    /// Every finished triangle, including culled ones: for the mesh monitor.
     tlm::tlm_analysis_port<datapath::Triangle> finished{"finished"};
 
     struct Counts {
         std::uint64_t passes = 0;         ///< triangles whose edges were decided
-        std::uint64_t normal_passes = 0;  ///< finished triangles that went round once more for N's
-        std::uint64_t edges_tested = 0;   ///< of these triangles; final edges are not
+        std::uint64_t normal_passes = 0;  ///< additional passes of finished triangles, for N's
+        std::uint64_t edges_tested = 0;   ///< edges of these triangles, without final edges
         std::uint64_t edges_split = 0;
-        std::uint64_t edges_uncut = 0;  ///< asked to be split, while another was cut: tested again
+        std::uint64_t edges_uncut = 0;  ///< to be split, but another edge was cut: tested again
         std::uint64_t finished = 0;
         std::uint64_t culled = 0;
     };
 
     const Counts& counts() const { return counts_; }
-    /// No triangle waits for its parts.
+    /// True if no triangle waits for its parts.
     virtual bool joined() const = 0;
-    /// Most triangles that waited for parts at a time.
+    /// The largest number of triangles that waited for parts at a time.
     virtual std::size_t most_incomplete() const = 0;
 
   protected:
@@ -44,7 +44,7 @@ class DecidingUnit : public Unit {
     DecidingUnit(const sc_core::sc_module_name& name, const UnitContext& context);
 
     void decide_edges(datapath::TrianglePass& pass);
-    /// Lighting, or dropped.
+    /// Culls a finished triangle, or not. Returns Way::lighting or Way::dropped.
     Way finish(datapath::Triangle& triangle);
     static TriangleToLight to_light(const Origin& origin, const datapath::Triangle& triangle);
 

@@ -10,22 +10,22 @@ namespace tessera {
 
 /// Displace Vertex (paper figure 7): P' = P + (S * d(t) + bias) * N, the one added long-latency unit.
 ///
-/// In:   BasePoint. Out: DisplacedPoint: the same and, of an edge or vertex, P'; normals unchanged. Of families also N'
-///       of a base triangle's vertex.
-/// Memory: one read of the displacement map per vertex or edge; of families one of the normal map per vertex. With a
-///       bilinear filter (Formats::filter) each is one request of four entries.
-/// Arithmetic: normalise an edge's normal (the pipeline's existing unit; of families it is normalised), multiply, round,
-///       multiply-accumulate, saturate (counted). Of families bump a vertex's normal. A bilinear filter interpolates
-///       before: three multiplications a code, nine a normal.
-/// Timing: one vertex, normal or edge per interval; latency 6 plus the map read, interval 1 by default, or the map
-///       reads' if that is longer: four cycles an edge with a bilinear filter and one port.
+/// In:   BasePoint. Out: DisplacedPoint: the same and, for an edge or vertex, P'; normals unchanged. In the family
+///       design also N' of a base triangle's vertex.
+/// Memory: one read of the displacement map per vertex or edge; in the family design one read of the normal map per
+///       vertex. With a bilinear filter (Formats::filter) each read is one request of four entries.
+/// Arithmetic: normalise an edge's normal (the pipeline's existing unit; in the family design it arrives normalised),
+///       multiply, round, multiply-accumulate, saturate (counted). In the family design bump a vertex's normal. A
+///       bilinear filter first interpolates: three multiplications per code, nine per normal.
+/// Timing: one vertex, normal or edge per interval; latency 6 plus the map read; interval 1 by default, or that of the
+///       map reads if longer: four cycles per edge with a bilinear filter and one port.
 /// Waits for the displacement map and the normal map; held back by Transform.
 class DisplaceVertex : public Stage<BasePoint, DisplacedPoint> {
   public:
     StreamInput<BasePoint> from_calculate_new_p{"from_calculate_new_p"};
     StreamOutput<DisplacedPoint> to_transform{"to_transform"};
     MemoryPort displacement_map;
-    std::optional<MemoryPort> normal_map;  ///< of families
+    std::optional<MemoryPort> normal_map;  ///< only in the family design
 
     DisplaceVertex(const sc_core::sc_module_name& name, const UnitContext& context);
 

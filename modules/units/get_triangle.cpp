@@ -43,7 +43,7 @@ void make(TestOperands& item, const TakenTriangle& taken, Parts part, Work) {
         item.ends[1] = EdgeEnd::of(taken.triangle.vertices[(k + 1) % 3]);
 }
 
-/// Nothing of a finished triangle is tested again.
+/// No edge of a finished triangle is tested again.
 Parts parts_to_test(const datapath::Triangle& triangle) {
     return triangle.finished ? Parts{0} : parts_of(triangle);
 }
@@ -83,7 +83,7 @@ TakenTriangle GetTriangle::taken(const datapath::Triangle& triangle) {
     return {pass & tag_mask_, {pass, triangle.base}, triangle};
 }
 
-/// Functional mode: the branch's parts, one after another.
+/// Functional mode: sends the branch's parts one after another.
 template <class Item>
 void GetTriangle::send_whole(Branch<Item>& branch, const TakenTriangle& taken, Parts parts,
                              const sc_core::sc_time& start, sc_core::sc_time& delay) {
@@ -162,7 +162,7 @@ bool GetTriangle::begin(std::uint64_t cycle) {
     return true;
 }
 
-/// True: nothing left to send, and nothing on offer.
+/// Returns true if nothing is left to send and nothing is on offer.
 template <class Item>
 bool GetTriangle::send_parts(Branch<Item>& branch, std::uint64_t cycle) {
     if (!branch.output->free())

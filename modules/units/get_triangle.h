@@ -18,16 +18,16 @@ namespace tessera {
 ///   re-tessellated         normals that have no N's yet, then the edges that are not final
 ///   finished, without N's  its normals only: no edge is tested again
 ///
-/// In a machine of families (Formats::families) it sends nothing to the tests: of a base triangle the vertices, of one
-/// from the queue the midpoints of its split edges, with N and N' as the tests found them.
+/// In the family design (Formats::families) it sends nothing to the tests. To Calculate New P it sends the vertices of
+/// a base triangle, or the midpoints of the split edges of a triangle from the queue, with the tests' N and N'.
 ///
 /// In:   triangles; the queue's level. Out: to Calculate New P all parts, to Tessellation Tests vertices and edges;
 ///       with three Tessellation Tests units edge k and its two vertices to unit k. To Pass or Tessellate the triangle
-///       itself, for what its parts do not carry.
-/// Timing: one part per interval (1) on each output, the first a latency (1) after the triangle was taken.
-/// Capacity: one triangle; the next is taken when all parts of the last have been taken.
-/// Waits for the Triangle Queue or the host; takes a host triangle only while the queue is below its watermark and has
-/// nothing to send. Held back by Calculate New P, Tessellation Tests and Pass or Tessellate.
+///       itself, for the values that its parts do not carry.
+/// Timing: one part per interval (1) on each output, the first a latency (1) after the triangle was accepted.
+/// Capacity: one triangle; the next is accepted when all parts of the last have been accepted.
+/// Waits for the Triangle Queue or the host; accepts a host triangle only while the queue is below its watermark and
+/// has nothing to send. Held back by Calculate New P, Tessellation Tests and Pass or Tessellate.
 class GetTriangle : public Unit {
   public:
     StreamInput<datapath::Triangle> from_host{"from_host"};
@@ -35,8 +35,8 @@ class GetTriangle : public Unit {
     StreamInput<QueueLevel> queue_level{"queue_level"};
     StreamOutput<GeometryOperands> to_calculate_new_p{"to_calculate_new_p"};
     sc_core::sc_vector<StreamOutput<TestOperands>>
-        to_tessellation_tests;            ///< one per Tessellation Tests unit; of families none
-    StreamOutput<TakenTriangle> to_join;  ///< to Pass or Tessellate; of families, to Tessellation
+        to_tessellation_tests;            ///< one per Tessellation Tests unit; none in the family design
+    StreamOutput<TakenTriangle> to_join;  ///< to Pass or Tessellate; in the family design to Tessellation
 
     GetTriangle(const sc_core::sc_module_name& name, const UnitContext& context);
 
@@ -54,7 +54,7 @@ class GetTriangle : public Unit {
     Begun begun() const override { return {activity_.items_in(), taken_.origin}; }
 
   private:
-    /// One output's share of the triangle: what is left to send, and what is on offer.
+    /// One output: its parts of the triangle that are still to be sent, and the part on offer.
     template <class Item>
     struct Branch {
         StreamOutput<Item>* output = nullptr;
@@ -86,7 +86,7 @@ class GetTriangle : public Unit {
     Tag tag_mask_;
     Work work_;
     std::uint32_t passes_ = 0;
-    TakenTriangle taken_;  // timed mode: whose parts are being sent
+    TakenTriangle taken_;  // timed mode: the triangle whose parts are being sent
     bool sending_ = false;
     Branch<GeometryOperands> geometry_;
     std::array<Branch<TestOperands>, most_tests_units> tests_;

@@ -12,8 +12,8 @@ namespace tessera {
 /// Arithmetic: three multiplications and a maximum per vertex, one multiplication; truncated to 8 bits, saturates
 ///       (counted).
 /// Timing: one triangle per interval; latency 4, interval 1 by default.
-/// Waits for nothing but its input; held back by the rasteriser, which timed mode calls from an SC_METHOD: it must not
-///       wait (modules/device/frame_streams.h is a buffer for a thread that does).
+/// Waits only for its input; held back by the rasteriser. Timed mode calls the rasteriser from an SC_METHOD, so it must
+///       not call wait() (modules/device/frame_streams.h has a buffer for a thread that does).
 class Lighting : public Stage<TriangleToLight, LitTriangle> {
   public:
     StreamInput<TriangleToLight> from_pass_or_tessellate{"from_pass_or_tessellate"};

@@ -120,7 +120,7 @@ void PassOrTessellate::finish_if_complete(Incomplete& place, const PartTag& tag,
         to_lighting.transport(triangle, delay);
 }
 
-/// Null: all places are taken, or the triangle itself is still to come.
+/// Returns null if all places are taken, or if the triangle itself has not arrived.
 PassOrTessellate::Incomplete* PassOrTessellate::open_place(const PartTag& tag, std::uint64_t cycle) {
     if (incomplete_.size() == timing_.buffer || from_get_triangle.empty())
         return nullptr;
@@ -206,7 +206,7 @@ void PassOrTessellate::step() {
         wake_at(pipeline_.next_start(cycle));
 }
 
-/// The branch that alone delays the oldest triangle; null if both, or neither, still owe parts.
+/// The branch that alone delays the oldest triangle; null if parts are missing from both branches, or from neither.
 const sc_core::sc_object* PassOrTessellate::late_branch() const {
     if (incomplete_.empty()) {
         for (const StreamInput<TestedEdge>& input : from_tessellation_tests)
@@ -271,7 +271,7 @@ PassOrTessellate::Way PassOrTessellate::join(datapath::TrianglePass& pass) {
     return finish(triangle);
 }
 
-/// Shows the triangle decided last; for one that only fetched normals, with its earlier tests and split.
+/// Shows the triangle decided last. After a pass for normals only, its tests and split are those of the earlier pass.
 void PassOrTessellate::trace_signals(Signals& signals) const {
     Unit::trace_signals(signals);
     signals.input(from_transform, "from_transform");

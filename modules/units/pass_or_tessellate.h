@@ -19,15 +19,15 @@ namespace tessera {
 /// culls finished triangles that face away.
 ///
 /// In:   each triangle from Get Triangle, and its parts from both branches; the last part completes it.
-/// Out:  to Tessellation, a triangle with split != 0, or one that is finished but lacks N's of a vertex (it goes round
-///       once more for its normals); to Lighting, a finished triangle.
+/// Out:  to Tessellation, a triangle with split != 0, or one that is finished but lacks N's of a vertex (it makes one
+///       more pass for its normals); to Lighting, a finished triangle.
 /// Arithmetic: logic; for culling two products of screen bits + 1 and a compare.
 /// Check: both branches' t_ij must agree, else SC_ERROR.
 /// Timing: one triangle per interval; latency 1, interval 1 by default, from the arrival of its last part.
 /// Capacity: `buffer` incomplete triangles (8). A triangle waits at the input from Get Triangle until its first part
-///       arrives from Transform and opens a place for it; there is room for all that can be ahead of their parts
-///       (triangles_ahead_of_parts). Edges from Tessellation Tests that arrive earlier wait at their own input, as many
-///       as there are places.
+///       arrives from Transform and opens a place for it; that input has room for all triangles that can be ahead of
+///       their parts (triangles_ahead_of_parts). Edges from Tessellation Tests that arrive earlier wait at their own
+///       input, which holds as many edges as there are places.
 /// Waits for both branches; held back by Tessellation and Lighting.
 class PassOrTessellate : public DecidingUnit {
   public:
@@ -40,7 +40,7 @@ class PassOrTessellate : public DecidingUnit {
 
     bool joined() const override { return incomplete_.empty(); }
     std::size_t most_incomplete() const override { return most_incomplete_; }
-    /// Most triangles that waited for their first part, at the end of a cycle; at least one if any came.
+    /// Most triangles that waited for their first part at the end of a cycle; at least one if any triangle arrived.
     std::size_t most_ahead_of_parts() const {
         return std::max({most_ahead_of_parts_, ahead_of_parts_, std::size_t{from_get_triangle.taken() > 0}});
     }
@@ -67,8 +67,8 @@ class PassOrTessellate : public DecidingUnit {
         Way way = Way::dropped;
     };
 
-    /// A triangle that is not complete: the parts that still have to come from Transform and from Tessellation Tests;
-    /// functional mode: when the last one came.
+    /// An incomplete triangle: the parts that have yet to arrive from Transform and from Tessellation Tests; in
+    /// functional mode, the time at which the last part arrived.
     struct Incomplete {
         DecidedTriangle triangle;
         Parts geometry_left = 0;
@@ -94,15 +94,15 @@ class PassOrTessellate : public DecidingUnit {
     const sc_core::sc_object* late_branch() const;
     void end_of_elaboration() override;
 
-    /// Completes the triangle and says where it goes.
+    /// Completes the triangle and returns its destination.
     Way decide(DecidedTriangle& whole);
     Way join(datapath::TrianglePass& pass);
 
     PerTriangle<Incomplete> incomplete_;
     std::size_t most_incomplete_ = 0;
     std::size_t most_ahead_of_parts_ = 0;
-    std::size_t ahead_of_parts_ = 0;  // at the end of the last step, which was in
-    std::uint64_t stepped_ = 0;       // this cycle
+    std::size_t ahead_of_parts_ = 0;  // at the end of the last step
+    std::uint64_t stepped_ = 0;       // cycle of the last step
     ElasticPipeline<Decided> pipeline_;
     Shown last_;
     const sc_core::sc_object* transform_ = nullptr;

@@ -11,13 +11,13 @@
 
 namespace tessera {
 
-/// What Tessellation does in both machines, the paper's and that of families (families/tessellation.h).
+/// Common base of Tessellation in the paper's design and in the family design (families/tessellation.h).
 class TessellatingUnit : public Unit {
   public:
-    /// Of families, every triangle that is split and the vertices inserted on its edges: for the scoreboard.
+    /// In the family design, every triangle that is split and the vertices inserted on its edges: for the scoreboard.
     tlm::tlm_analysis_port<datapath::TrianglePass> inserted{"inserted"};
 
-    /// Triangles split into 2, 3, 4 children; index 1: passed unchanged.
+    /// Triangles split into 2, 3 or 4 children, by number of children; index 1: passed on unchanged.
     const std::array<std::uint64_t, 5>& made_into() const { return made_into_; }
     std::uint64_t children() const { return made_into_[1] + 2 * made_into_[2] + 3 * made_into_[3] + 4 * made_into_[4]; }
 
@@ -34,16 +34,16 @@ class TessellatingUnit : public Unit {
 };
 
 /// Tessellation (paper figures 6 and 7): builds the two, three or four children of a triangle from its vertices and
-/// the new ones. Winding order is kept. A child's edge from corner to corner of its parent was tested with it and is
-/// final (Formats::final_edges).
+/// the new ones. Winding order is kept. A child's edge from corner to corner of its parent was tested with the parent
+/// and is final (Formats::final_edges).
 ///
-/// In:   DecidedTriangle. Out: its children, one after another; for a finished triangle on its way to fetch normals,
+/// In:   DecidedTriangle. Out: its children, one after another; for a finished triangle that still needs its normals,
 ///       the triangle itself.
-/// Arithmetic: wiring; with the `shorter` diagonal two Manhattan lengths (6 subtractions, 4 adds), a margin (1 subtraction) and a compare. New
-///       vertices' generations saturate (counted), which can only happen with the Generation Test off.
-/// Timing: one child per interval, the first a latency after the triangle was taken; latency 1, interval 1 by default.
-///       Capacity: one triangle; the next is taken when its last child has been taken.
-/// Waits for nothing but its input; held back by the Triangle Queue.
+/// Arithmetic: wiring; with the `shorter` diagonal two Manhattan lengths (6 subtractions, 4 adds), a margin (1
+///       subtraction) and a compare. New vertices' generations saturate (counted), only with the Generation Test off.
+/// Timing: one child per interval, the first a latency after the triangle was accepted; latency 1, interval 1 by
+///       default. Capacity: one triangle; the next is accepted when the last child has been accepted.
+/// Waits only for its input; held back by the Triangle Queue.
 class Tessellation : public TessellatingUnit {
   public:
     StreamInput<DecidedTriangle> from_pass_or_tessellate{"from_pass_or_tessellate"};

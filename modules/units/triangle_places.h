@@ -10,8 +10,8 @@
 
 namespace tessera {
 
-/// Triangles that are taken out in any order, each by its place. A triangle stays where it is until it is released. Places
-/// are used again in the order in which they were released: triangles that leave first in first out lie one behind another.
+/// A store of triangles that can be removed in any order, each by its place. A triangle stays in its place until it is
+/// released. Places are reused in order of release, so that triangles that leave first in first out lie consecutively.
 class TrianglePlaces {
   public:
     std::uint32_t put(const datapath::Triangle& triangle) {
@@ -33,7 +33,7 @@ class TrianglePlaces {
   private:
     static constexpr std::uint32_t block = 1024;
 
-    /// As many places again.
+    /// Doubles the number of places.
     void grow() {
         const std::size_t more = blocks_.empty() ? 1 : blocks_.size();
         for (std::size_t k = 0; k < more; ++k) {

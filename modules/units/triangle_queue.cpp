@@ -112,7 +112,7 @@ void TriangleQueue::spill(const datapath::Triangle& triangle) {
     ++spilled_;
 }
 
-/// False: no place for the triangle now.
+/// Returns false if there is no place for the triangle at present.
 bool TriangleQueue::put(const datapath::Triangle& triangle) {
     const bool fifo = design_.order == TriangleOrder::fifo;
     if (on_chip_room() && (!fifo || (off_chip_ == 0 && refills_ == 0))) {

@@ -19,12 +19,12 @@ namespace tessera {
 
 /// Triangle Queue (paper figure 7): waiting triangles, first in first out (the paper's) or last in first out.
 ///
-/// In:   triangles from Tessellation. Out: triangles to Get Triangle, and whether fewer than the watermark wait,
-///       whenever that changes.
-/// Capacity: `capacity` triangles on chip, unbounded by default and in functional mode; the high-water mark says what a
-///       design needs. Beyond it triangles go to off-chip memory: the newest (first in first out), or the oldest on
-///       chip (last in first out). They return when there is room on chip (first in first out), or when at most half
-///       of it is taken (last in first out, so that a triangle does not go back and forth).
+/// In:   triangles from Tessellation. Out: triangles to Get Triangle, and whether fewer triangles than the watermark
+///       wait, whenever that changes.
+/// Capacity: `capacity` triangles on chip, unbounded by default and in functional mode; the high-water mark shows what
+///       a design needs. Beyond it triangles spill to off-chip memory: the newest (first in first out), or the oldest
+///       on chip (last in first out). They return when there is room on chip (first in first out), or when at most half
+///       of it is in use (last in first out, so that a triangle does not go back and forth).
 /// Timing: one triangle in and one out per interval; latency 1, interval 1 by default, from store to output.
 /// Waits for Tessellation, and for off-chip memory; held back by Get Triangle, and when full by off-chip memory.
 class TriangleQueue : public Unit {
@@ -39,9 +39,9 @@ class TriangleQueue : public Unit {
     bool below_watermark() const { return waiting() < design_.watermark; }
 
     bool drained() const { return waiting() == 0 && !sending_ && kept_.empty(); }
-    /// Functional mode: notified when the last triangle that waited has gone through the machine.
+    /// Functional mode: notified when the last waiting triangle has gone through the machine.
     const sc_core::sc_event& emptied() const { return emptied_; }
-    /// Triangles on chip, off chip, and on their way.
+    /// Triangles on chip, off chip, and in transit.
     std::size_t waiting() const {
         return store_.size() + static_cast<std::size_t>(off_chip_) + refills_ + leaving_.size();
     }
@@ -52,20 +52,20 @@ class TriangleQueue : public Unit {
     std::uint64_t refilled() const { return refilled_; }
     const LevelHistory& history() const { return history_; }
     LevelHistory& history() { return history_; }
-    /// A triangle found no place, with QueueOverflow::error.
+    /// With QueueOverflow::error: there was no place for a triangle.
     bool overflowed() const { return overflowed_; }
 
     /// A triangle had to be spilled while off-chip memory was full.
     bool off_chip_memory_full() const { return off_chip_memory_full_; }
 
-    /// Conducted: where the triangles are kept that have come since the last call, and how many.
+    /// Conducted: the number of triangles that have arrived since the last call, and where they are kept.
     struct Arrived {
         std::array<std::uint32_t, 4> place{};
         unsigned count = 0;
     };
     Arrived take_arrived() { return std::exchange(arrived_, {}); }
     const datapath::Triangle& kept(std::uint32_t place) { return kept_.at(place); }
-    /// Conducted: sends the triangle that is kept there.
+    /// Conducted: sends the triangle kept in this place.
     void send(std::uint32_t place, sc_core::sc_time& delay);
     struct Levels {
         std::uint64_t most = 0, most_on_chip = 0;
@@ -101,10 +101,10 @@ class TriangleQueue : public Unit {
     std::size_t record_bytes_;
     TriangleStore store_;
     ElasticPipeline<datapath::Triangle> leaving_;
-    std::uint64_t next_in_ = 0;        // cycle from which a triangle may be taken
+    std::uint64_t next_in_ = 0;        // cycle from which a triangle may be accepted
     std::uint64_t off_chip_ = 0;       // triangles in off-chip memory
     std::uint64_t off_chip_head_ = 0;  // place of the oldest
-    std::size_t refills_ = 0;          // on their way back
+    std::size_t refills_ = 0;          // triangles on their way back
     std::uint64_t spilled_ = 0;
     std::uint64_t refilled_ = 0;
     bool overflowed_ = false;

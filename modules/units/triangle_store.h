@@ -7,8 +7,8 @@
 
 namespace tessera {
 
-/// The Triangle Queue's memory: a ring that doubles when full, so that nothing is allocated once a run has reached
-/// its high-water mark.
+/// The Triangle Queue's memory: a ring buffer that doubles when full, so that nothing is allocated once a run has
+/// reached its high-water mark.
 class TriangleStore {
   public:
     explicit TriangleStore(TriangleOrder order) : order_(order), ring_(1024) {}
@@ -21,7 +21,7 @@ class TriangleStore {
             ring_.grow();
         ring_.push(triangle);
     }
-    /// The next triangle in order. Not when empty. The reference holds until the next push.
+    /// Removes the next triangle in order. Must not be empty. The reference is valid until the next push.
     const datapath::Triangle& pop() {
         if (order_ == TriangleOrder::fifo)
             return pop_oldest();

@@ -6,10 +6,10 @@
 
 namespace tessera {
 
-/// An edge, or a vertex of a base triangle, with the texture coordinate around which it is tested.
+/// An edge, or a vertex of a base triangle, with the texture coordinate at which it is tested.
 struct EdgeToTest : TestOperands {
     static constexpr const char* name = "edge to test";
-    datapath::TexCoord t_ij;  ///< of a vertex its own
+    datapath::TexCoord t_ij;  ///< for a vertex, its own t
 
     template <class Codec, class Any>
     static constexpr void describe(datapath::Fields<Codec>& fields, Any& item) {
@@ -20,12 +20,11 @@ struct EdgeToTest : TestOperands {
 
 /// Calculate New U (paper figure 8, 3.1.2): the texture coordinate of the edge's midpoint, for all tests.
 ///
-/// In:   TestOperands: edges, with t_i, t_j; vertices of a base triangle, which pass unchanged, to the Normal Test
-///       alone.
-/// Out:  t_ij = (t_i + t_j) >> 1, to all four tests, with what each needs of the edge's ends.
+/// In:   TestOperands: edges, with t_i, t_j; vertices of a base triangle, which go unchanged to the Normal Test only.
+/// Out:  t_ij = (t_i + t_j) >> 1, to all four tests, with the operands of the edge's ends that each test needs.
 /// Arithmetic: add, shift by 1.
 /// Timing: one edge or vertex per interval; latency 1, interval 1 by default.
-/// Waits for nothing but its input; held back by the slowest of the tests.
+/// Waits only for its input; held back by the slowest of the tests.
 class CalculateNewU : public Stage<TestOperands, EdgeToTest> {
   public:
     StreamInput<TestOperands> input{"input"};

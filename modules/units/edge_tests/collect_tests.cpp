@@ -36,7 +36,7 @@ void CollectTests::b_transport(Result& result, sc_core::sc_time& delay) {
     to_pass_or_tessellate.transport(edge, delay);
 }
 
-/// Adds a test's result for the edge that leaves.
+/// Adds a test's result to the edge that leaves.
 template <class Result>
 void CollectTests::take(StreamInput<Result>& input) {
     const PartTag& tag = input.front().tag;

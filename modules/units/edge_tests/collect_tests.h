@@ -10,11 +10,11 @@
 
 namespace tessera {
 
-/// Joins the four tests on the way to Pass or Tessellate (paper figure 8): an edge goes on when all four have decided.
+/// Joins the results of the four tests for Pass or Tessellate (paper figure 8): an edge leaves when all have decided.
 ///
 /// In:   each test's result. Out: TestedEdge, once.
-/// Timing: one edge a cycle, no latency of its own: wires. Capacity: per test `results_buffer` edges that wait for
-///       the other tests.
+/// Timing: one edge per cycle, no latency of its own: wires. Capacity: for each test `results_buffer` edges that wait
+///       for the other tests.
 /// Waits for the slowest test; held back by Pass or Tessellate.
 class CollectTests : public Unit {
   public:
@@ -32,7 +32,7 @@ class CollectTests : public Unit {
     Begun begun() const override { return {activity_.items_in(), leaving_.tag.origin, leaving_.tag.bit()}; }
 
   private:
-    /// Functional mode: what has been decided for a triangle's edge under way, and when the last test decided.
+    /// Functional mode: the results so far for the edge under way, and the time of the last one.
     struct Decided {
         TestedEdge edge;
         unsigned tests = 0;

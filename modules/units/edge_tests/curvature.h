@@ -7,17 +7,17 @@
 
 namespace tessera {
 
-/// Curvature Test, in the Summed Height Test's place: how far does the map leave the edge's chord? The host has fitted a
-/// quadratic to the map around each cell of a pyramid, and says how much that leaves.
+/// Curvature Test, in place of the Summed Height Test: how far does the map deviate from the edge's chord? The host has
+/// fitted a quadratic to the map around each cell of a pyramid; an entry also holds what the fit leaves over.
 ///
 /// In:   HeightOperands. Out: HeightResult.
-/// Memory: one entry an edge of the Curvature Table, of the level of the edge's length. Of an edge of at most two texels
-///         the displacement map instead: the codes of its ends and of its midpoint, in one request, through the map's
-///         second side (table_memory.h); behind a cache, which Displace Vertex reads too.
-/// Arithmetic: a count of leading zeros and shifts for the level; three products of 4 x 4 bits, three of 8 x 7, their sum,
-///         a shift, a compare.
+/// Memory: one entry of the Curvature Table per edge, from the level that matches the edge's length. For an edge of at
+///         most two texels the displacement map instead: the codes of its ends and of its midpoint, in one request,
+///         through the map's second side (table_memory.h) or, if the map has a cache, through Displace Vertex's cache.
+/// Arithmetic: a count of leading zeros and shifts for the level; three products of 4 x 4 bits, three of 8 x 7, their
+///         sum, a shift, a compare.
 /// Timing: latency 4 after the last entry; interval 1 by default. With one port a short edge's codes take three cycles.
-/// Waits for Calculate New U, the Curvature Table and the displacement map; held back by the collection of the tests.
+/// Waits for Calculate New U, the Curvature Table and the displacement map; held back by the collector of the tests.
 class CurvatureTest : public HeightTestUnit {
   public:
     using HeightTestUnit::HeightTestUnit;

@@ -8,8 +8,8 @@
 
 namespace tessera {
 
-/// The place of the Summed Height Test in Tessellation Tests, for it and for the tests that a design may have there
-/// instead (datapath::HeightTest), each with its own table.
+/// Common base of the Summed Height Test and of the tests that a design may have in its place (datapath::HeightTest),
+/// each with its own table.
 ///
 /// In:   HeightOperands. Out: HeightResult.
 class HeightTestUnit : public Stage<HeightOperands, HeightResult> {
@@ -17,7 +17,7 @@ class HeightTestUnit : public Stage<HeightOperands, HeightResult> {
     StreamInput<HeightOperands> input{"input"};
     StreamOutput<HeightResult> output{"output"};
     MemoryPort table;
-    std::optional<MemoryPort> displacement_map;  ///< if it reads codes
+    std::optional<MemoryPort> displacement_map;  ///< if the test reads codes
 
     HeightTestUnit(const sc_core::sc_module_name& name, const UnitContext& context);
 

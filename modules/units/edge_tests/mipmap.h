@@ -7,14 +7,14 @@
 
 namespace tessera {
 
-/// Mipmap Test, in the Summed Height Test's place: does the filtered map at the edge's midpoint leave the chord? What the
-/// paper (2.3.1) weighs its own test against; the host fills the table with means or with maxima.
+/// Mipmap Test, in place of the Summed Height Test: does the filtered map at the edge's midpoint deviate from the
+/// chord? The paper (2.3.1) names it as an alternative. The host fills the table with means or with maxima.
 ///
 /// In:   HeightOperands. Out: HeightResult.
-/// Memory: three entries an edge of the Mipmap Table, of the level of the edge's length: of its ends and of its midpoint.
+/// Memory: three entries of the Mipmap Table per edge, at its ends and midpoint, from the level that fits its length.
 /// Arithmetic: a count of leading zeros and shifts for the level; two adds, a compare.
 /// Timing: latency 2 after the last entry; interval 1 by default. With one port an edge's entries take three cycles.
-/// Waits for Calculate New U and the Mipmap Table; held back by the collection of the tests.
+/// Waits for Calculate New U and the Mipmap Table; held back by the collector of the tests.
 class MipmapTest : public HeightTestUnit {
   public:
     using HeightTestUnit::HeightTestUnit;

@@ -61,7 +61,7 @@ datapath::Direction NormalTest::bumped(const datapath::Direction& n, const datap
     return bump(n, t, handedness, map_normal, registers_.formats, saturations_);
 }
 
-/// The N' of an edge's ends that this unit has found itself.
+/// Fills in the N' of an edge's ends that this unit has calculated itself.
 void NormalTest::take_corners(const NormalOperands& edge) {
     Corners& corners = *corners_.find(edge.tag.triangle);
     const unsigned i = edge.tag.index();
@@ -100,7 +100,7 @@ void NormalTest::trace_signals(Signals& signals) const {
         signals.value("highlight_threshold", 18, registers_.tests.highlight_normal_threshold);
 }
 
-/// A corner that was bumped shows as an edge's two ends and its midpoint, which do not differ.
+/// A bumped corner is shown as an edge whose two ends and midpoint are all equal to it.
 void NormalTest::trace_processed(Signals& signals, const NormalOperands&, const NormalResult& result) const {
     const auto& [i, j, ij] = compared_;
     signals.direction("n_i", i);

@@ -10,29 +10,29 @@
 namespace tessera {
 
 /// Normal Test (paper figure 8, 2.2, 3.1.4): Calculate New N, Normalise, Bump, and the comparison of the displaced
-/// normals. It includes the optional Highlight Test (golden/ALGORITHM.md 4.6), which needs the same three normals and
+/// normals. It includes the optional Highlight Test (golden/ALGORITHM.md 4.6), which uses the same three normals and
 /// their differences, and splits further where the Phong highlight is.
 ///
-/// In:   NormalOperands: edges; of a base triangle its vertices first, which are bumped and end here.
-///       Of families N' of all vertices is known, and only edges come.
+/// In:   NormalOperands: edges; for a base triangle its vertices first, which are bumped and go no further.
+///       In the family design N' of all vertices is known, and only edges arrive.
 /// Out:  NormalResult: N_ij, T_ij, N'_ij, the tests' bits, and N' of the edge's first end.
 /// Memory: one read of the normal map per edge or vertex; with a bilinear filter (Formats::filter) one request of four
 ///       entries.
 /// Arithmetic: add, shift by 1; the pipeline's existing normalise and bump units; six absolute differences and
-///       compares, one OR. A bilinear filter adds nine multiplications. The Highlight Test adds three dot products with one vector, six compares with another
-///       threshold and three with a cosine; the differences are the Normal Test's.
-/// Timing: one edge or vertex per interval; latency 9 plus the map read, interval 1 by default, or the map reads' if that
-///       is longer. A Highlight Test adds its own latency, 1 by default, and nothing to the interval.
-///       An edge of a base triangle starts when the map entries of all its corners in this unit have arrived.
+///       compares, one OR. A bilinear filter adds nine multiplications. The Highlight Test adds three dot products with
+///       one vector, six compares with a second threshold and three with a cosine; the differences are shared.
+/// Timing: one edge or vertex per interval; latency 9 plus the map read; interval 1 by default, or that of the map
+///       reads if longer. A Highlight Test adds its own latency, 1 by default, and nothing to the interval. An edge of
+///       a base triangle starts when the map entries of all its corners in this unit have arrived.
 /// State: a base triangle's tag, and N' of its corners.
-/// Waits for Calculate New U and the normal map. Held back by the collection of the tests.
+/// Waits for Calculate New U and the normal map. Held back by the collector of the tests.
 class NormalTest : public Stage<NormalOperands, NormalResult> {
   public:
     StreamInput<NormalOperands> input{"input"};
     StreamOutput<NormalResult> output{"output"};
     MemoryPort normal_map;
 
-    /// takes: the vertices and edges of a triangle that come to the unit (parts_for_tests).
+    /// takes: the vertices and edges of a triangle that this unit receives (parts_for_tests).
     NormalTest(const sc_core::sc_module_name& name, const UnitContext& context, Parts takes = parts_for_tests(0, 1));
 
     const datapath::Saturations& saturations() const { return saturations_; }
@@ -40,7 +40,7 @@ class NormalTest : public Stage<NormalOperands, NormalResult> {
     void trace_signals(Signals& signals) const override;
 
   protected:
-    /// Of a base triangle.
+    /// The corners of a base triangle.
     struct Corners {
         Parts bumped = 0;
         Parts tested = 0;  // edges

@@ -6,16 +6,16 @@
 
 namespace tessera {
 
-/// Rank Test, in the Summed Height Test's place: does the mesh need the edge's midpoint? The host has ranked every point
-/// of the base mesh's lattice beforehand.
+/// Rank Test, in place of the Summed Height Test: does the mesh need the edge's midpoint? The host has ranked every
+/// point of the base mesh's lattice beforehand.
 ///
-/// In:   HeightOperands. Out: HeightResult, with the rank, by which the cut `greatest_rank` chooses.
-/// Memory: one entry an edge of even length, of the Rank Table: a rank, a bound, or both. As the viewer sees it
-///       (Formats::distances) a bound has a radius beside it.
-/// Arithmetic: two subtractions, an OR of their lowest bits, two compares. As the viewer sees it also one subtraction, two
+/// In:   HeightOperands. Out: HeightResult, with the rank, by which the `greatest_rank` cut chooses.
+/// Memory: one entry of the Rank Table per edge of even length: a rank, a bound, or both. In the view-dependent variant
+///       (Formats::distances) a bound comes with a radius.
+/// Arithmetic: two subtractions, an OR of their lowest bits, two compares. View-dependent also one subtraction, two
 ///       leading-zero counts, three shifts and two adds.
 /// Timing: latency 1 after the entry; interval 1 by default.
-/// Waits for Calculate New U and the Rank Table; held back by the collection of the tests.
+/// Waits for Calculate New U and the Rank Table; held back by the collector of the tests.
 class RankTest : public HeightTestUnit {
   public:
     using HeightTestUnit::HeightTestUnit;

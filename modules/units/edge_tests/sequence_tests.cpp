@@ -15,7 +15,7 @@ SequenceTests::SequenceTests(const sc_core::sc_module_name& name, const UnitCont
     to_pass_or_tessellate.clocked_by(context, *this);
 }
 
-/// Null: no edge is there.
+/// Returns null if there is no edge.
 SequenceTests::Edge* SequenceTests::first(Next next) {
     for (std::size_t k = 0; k < edges_.size(); ++k)
         if (edges_.at(k).next == next)
@@ -33,7 +33,7 @@ bool SequenceTests::take_vertex(std::uint64_t cycle) {
     return true;
 }
 
-/// One edge or vertex a cycle.
+/// One edge or vertex per cycle.
 bool SequenceTests::may_take(std::uint64_t cycle) {
     if (next_take_ > cycle) {
         wake_at(next_take_);
@@ -43,7 +43,7 @@ bool SequenceTests::may_take(std::uint64_t cycle) {
     return true;
 }
 
-/// Takes an edge whose cheap tests have decided.
+/// Accepts an edge whose cheap tests have decided.
 bool SequenceTests::take_edge(std::uint64_t cycle) {
     if (edges_.full() || vertex_waits_ || normal_operands.empty() || normal_operands.front().tag.is_vertex() ||
         height_operands.empty() || from_tex_coord_test.empty() || from_view_test.empty() || !may_take(cycle))
@@ -94,7 +94,7 @@ bool SequenceTests::send_on() {
     return sent;
 }
 
-/// Null: no such edge waits for this result.
+/// Returns null if no such edge waits for this result.
 SequenceTests::Edge* SequenceTests::in_test(const PartTag& tag, Next expected) {
     for (std::size_t k = 0; k < edges_.size(); ++k) {
         Edge& edge = edges_.at(k);
@@ -104,7 +104,7 @@ SequenceTests::Edge* SequenceTests::in_test(const PartTag& tag, Next expected) {
     return nullptr;
 }
 
-/// Edges may overtake one another between two tests, so the tag says whose result it is.
+/// Edges may overtake one another between two tests, so the tag identifies the edge of a result.
 template <class Result>
 bool SequenceTests::take_result(StreamInput<Result>& input, Next expected) {
     if (input.empty())

@@ -10,16 +10,16 @@
 
 namespace tessera {
 
-/// Sequence Tests: takes the place of Collect Tests in a design whose tests are evaluated cheapest first. It sends an
-/// edge to a test only if the decision still depends on it (sequencing_unit.h).
+/// Sequence Tests: replaces Collect Tests in a design whose tests are evaluated cheapest first. It sends an edge to a
+/// test only if the decision still depends on that test (sequencing_unit.h).
 ///
-/// In:   what the two table tests need of an edge, from Calculate New U; vertices of a base triangle, which go on to
-///       the Normal Test; each test's result.
+/// In:   from Calculate New U the operands of the two table tests; vertices of a base triangle, which go on to the
+///       Normal Test; each test's result.
 /// Out:  operands to the Normal and the Summed Height Test; TestedEdge, once, in order of arrival, with the tests that
 ///       were evaluated.
 /// Arithmetic: none.
-/// Timing: one edge a cycle in each direction, no latency of its own. Capacity: `edges_in_sequence` edges (32) between
-///       their cheap tests' results and their turn to leave; `results_buffer` at each input.
+/// Timing: one edge per cycle in each direction, no latency of its own. Capacity: `edges_in_sequence` edges (32), from
+///       their cheap tests' results until they leave; `results_buffer` at each input.
 /// Waits for the tests of its oldest edge. Held back by the Normal Test, the Summed Height Test, Pass or Tessellate.
 class SequenceTests : public SequencingUnit {
   public:
@@ -58,7 +58,7 @@ class SequenceTests : public SequencingUnit {
     Ring<Edge> edges_;
     NormalOperands vertex_;  // on offer to the Normal Test
     bool vertex_waits_ = false;
-    Edge* to_normal_ = nullptr;  // on offer; null: none
+    Edge* to_normal_ = nullptr;  // the edge on offer; null: none
     Edge* to_height_ = nullptr;
     TestedEdge left_;  // the edge that left last
     std::uint64_t next_take_ = 0, next_leave_ = 0;

@@ -39,12 +39,12 @@ SequencingUnit::Next SequencingUnit::after_cheap_tests(const Edge& edge) const {
     return has_rank(edge.height) ? Next::summed_height_test : without_rank();
 }
 
-/// Whether the Rank Test has something to say: known without its table.
+/// Whether the Rank Test applies to the edge. This is known without reading its table.
 bool SequencingUnit::has_rank(const HeightOperands& edge) const {
     return registers_.tests.summed_height_test && has_lattice_midpoint(edge.t_i, edge.t_j, registers_.formats);
 }
 
-/// Of an edge that the Rank Test does not split.
+/// The next test of an edge that the Rank Test does not split.
 SequencingUnit::Next SequencingUnit::without_rank() const {
     return registers_.tests.normal_test || registers_.tests.highlight_test ? Next::normal_test : Next::leave;
 }
@@ -55,7 +55,7 @@ SequencingUnit::Next SequencingUnit::after_normal_test(const Edge& its) const {
     const bool answered = (edge.found.evaluated & datapath::summed_height_bit) != 0;
     if (!may_split(edge) || answered)
         return Next::leave;
-    // with a Rank Test also for the rank of an edge that splits
+    // A Rank Test is also evaluated for the rank of an edge that splits.
     const bool matters = height_first_ ? has_rank(its.height) : !splits && registers_.tests.summed_height_test;
     return matters ? Next::summed_height_test : Next::leave;
 }

@@ -10,18 +10,18 @@
 
 namespace tessera {
 
-/// What Sequence Tests does in both machines, that of triangles (sequence_tests.h) and that of families
-/// (families/sequence_tests.h): says which tests an edge needs, and runs them in functional mode.
+/// Common base of Sequence Tests in the triangle design (sequence_tests.h) and in the family design
+/// (families/sequence_tests.h): determines which tests an edge needs, and runs them in functional mode.
 ///
 ///   Tex Coord Test (with Generation), View Test   every edge; they read no table
-///   Normal Test                                   edges that none of these keeps whole; of triangles also the edges
-///                                                 of a base triangle, which bring the N' of its vertices
+///   Normal Test                                   edges that none of these keeps whole; in the triangle design also
+///                                                 a base triangle's edges, which carry the N' of its vertices
 ///   Summed Height Test                            edges that may split, and that neither Normal nor Highlight Test
 ///                                                 splits
 ///
-/// A Rank Test, which reads one entry, comes before the Normal Test, but for the edges of a base triangle; edges without
-/// a midpoint on the lattice pass it by. The Normal Test then gets the edges that the Rank Test splits, for N' of their
-/// midpoints, and the others only if it is switched on.
+/// A Rank Test, which reads one entry, is evaluated before the Normal Test, except for the edges of a base triangle.
+/// Edges without a midpoint on the lattice skip it. The Normal Test then receives the edges that the Rank Test splits,
+/// for N' of their midpoints, and the others only if it is switched on.
 class SequencingUnit : public Unit {
   public:
     StreamOutput<HeightOperands> to_summed_height_test{"to_summed_height_test"};
@@ -53,7 +53,7 @@ class SequencingUnit : public Unit {
     const bool height_first_;  // a Rank Test
 
   private:
-    /// Functional mode: an edge whose operands and cheap results have not all come.
+    /// Functional mode: an edge whose operands and cheap results have not all arrived.
     struct Arriving {
         Edge edge;
         datapath::EdgeInView ends;  // of the View Test's result

@@ -5,12 +5,12 @@
 
 namespace tessera {
 
-/// Of the edge's three rectangles.
+/// The size of the edge's three rectangles.
 datapath::RectangleSize SummedHeightTest::size(const HeightOperands& edge) const {
     return rectangle_size(edge.t_i, edge.t_j, registers_.map, registers_.formats);
 }
 
-/// The sums around its ends are their codes, and around its midpoint the code there.
+/// Whether the sums are codes: those of the edge's ends, and the code at its midpoint.
 bool SummedHeightTest::has_codes(const HeightOperands& edge, const datapath::RectangleSize& its_size) const {
     return displacement_map && edge.codes_known && its_size.is_one_texel();
 }

@@ -12,15 +12,15 @@ namespace tessera {
 /// around the ends?
 ///
 /// In:   HeightOperands. Out: HeightResult.
-/// Memory: three rectangles an edge on the Summed Height Table, four reads each; up to nine where a rectangle wraps
+/// Memory: three rectangles per edge in the Summed Height Table, four reads each; up to nine where a rectangle wraps
 ///         around a repeated map. A rectangle is one request.
-///         In a design whose vertices carry their displacement codes (Formats::codes) the sums of an edge with
-///         rectangles of one texel are codes: those of its ends, and one read of the displacement map for its
-///         midpoint. Edges of a base triangle, whose vertices have no codes yet, read the table.
+///         In a design whose vertices carry their displacement codes (Formats::codes) the sums over rectangles of one
+///         texel are codes: those of the edge's ends, and for its midpoint one read of the displacement map. Edges of a
+///         base triangle, whose vertices have no codes yet, read the table.
 /// Arithmetic: subtract, shift, add, compare; sums modulo 2^n. With the area threshold two multiplications.
-/// Timing: latency 3 after the last table entry; interval 1 by default, or the table reads' if that is longer: with one
+/// Timing: latency 3 after the last table entry; interval 1 by default, or that of the table reads if longer: with one
 ///         port a rectangle takes four cycles, an edge 12, a triangle 36.
-/// Waits for Calculate New U and the Summed Height Table; held back by the collection of the tests.
+/// Waits for Calculate New U and the Summed Height Table; held back by the collector of the tests.
 class SummedHeightTest : public HeightTestUnit {
   public:
     using HeightTestUnit::HeightTestUnit;

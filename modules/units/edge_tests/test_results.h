@@ -5,9 +5,9 @@
 
 namespace tessera {
 
-// What the results of the tests say of an edge: for the unit that collects them.
+// Adds test results to an edge, for the unit that collects them.
 
-/// Notes what a test decided, and that it was evaluated.
+/// Records a test's decision, and that it was evaluated.
 constexpr void set_test(datapath::EdgeTests& edge, bool decided, datapath::TestBits bit) {
     edge.evaluated = static_cast<std::uint8_t>(edge.evaluated | bit);
     if (decided)
@@ -35,7 +35,7 @@ constexpr void add_result(TestedEdge& edge, const ViewResult& result) {
     set_test(edge.found, result.view, datapath::view_bit);
 }
 
-/// An edge as it leaves: its fields, each test, the decision.
+/// Shows an edge as it leaves: its fields, each test, the decision.
 inline void show_tested_edge(Signals& signals, const TestedEdge& edge, const datapath::TestParameters& parameters) {
     const unsigned tests = edge.found.tests;
     signals.item("out", edge);

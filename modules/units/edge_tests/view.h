@@ -12,27 +12,27 @@ namespace tessera {
 /// View Test (paper figure 8, 2.4, 3.1.1): is the edge long enough on the screen to be worth splitting?
 ///
 /// In:   ViewOperands; for a base triangle also its three ScreenCorners. Out: ViewResult. An edge with one end on or
-///       behind the near plane counts as long, with both as invisible.
-/// Arithmetic: two subtractions, absolute values, add, compare; two adds, of the ends' distances and depths, for a
-///       Rank Test as the viewer sees it.
+///       behind the near plane counts as long; with both ends there it counts as invisible.
+/// Arithmetic: two subtractions, absolute values, add, compare; for a view-dependent Rank Test two adds, of the ends'
+///       distances and depths.
 /// Timing: one edge per interval; latency 1, interval 1 by default.
 /// State: for each base triangle between Transform and Pass or Tessellate its tag and the corners that have arrived:
-///        as many places as Pass or Tessellate has, and two for what waits at its input.
-/// Waits for Calculate New U, and with a base triangle's edge for the screen positions of its vertices from Transform,
-/// which it takes at any time. Held back by the collection of the tests.
+///        as many places as Pass or Tessellate has, and two for the triangles that wait at its input.
+/// Waits for Calculate New U, and for an edge of a base triangle also for the screen positions of its vertices from
+/// Transform, which are accepted at any time. Held back by the collector of the tests.
 class ViewTest : public Stage<ViewOperands, ViewResult> {
   public:
     StreamInput<ViewOperands> input{"input"};
-    std::optional<StreamInput<ScreenCorner>> from_transform;  ///< not of families, whose edges bring P's
+    std::optional<StreamInput<ScreenCorner>> from_transform;  ///< not in the family design, whose edges carry P's
     StreamOutput<ViewResult> output{"output"};
 
-    /// takes: the vertices and edges of a triangle that come to the unit (parts_for_tests).
+    /// takes: the vertices and edges of a triangle that this unit receives (parts_for_tests).
     ViewTest(const sc_core::sc_module_name& name, const UnitContext& context, Parts takes);
 
     void trace_signals(Signals& signals) const override;
 
   protected:
-    /// Of a base triangle: which corners have come, and where they are; functional mode: since when.
+    /// The corners of a base triangle that have arrived, and their positions; in functional mode, the time of the last.
     struct Corners {
         Parts come = 0;
         std::array<datapath::ScreenPosition, 3> screen;
@@ -52,7 +52,7 @@ class ViewTest : public Stage<ViewOperands, ViewResult> {
     void end_of_elaboration() override;
 
     const datapath::Registers& registers_;
-    Parts last_edge_;  // that comes of a triangle
+    Parts last_edge_;  // the last edge of a triangle that this unit receives
     PerTriangle<Corners> corners_;
     Ends ends_;  // of the edge decided last
     const sc_core::sc_object* transform_ = nullptr;

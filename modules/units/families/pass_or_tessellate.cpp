@@ -77,7 +77,7 @@ void FamilyPassOrTessellate::finish_if_complete(Place& waiting, sc_core::sc_time
     }
 }
 
-/// All children of a family whose edges have come.
+/// Decides all children of a family whose edges have arrived.
 void FamilyPassOrTessellate::decide(Place& place) {
     last_ = {place.family.origin, static_cast<unsigned>(place.indices.count), 0};
     unsigned told = 0;
@@ -91,7 +91,7 @@ void FamilyPassOrTessellate::decide(Place& place) {
     clock_.progress();
 }
 
-/// told: bit k: edge k was told with another child.
+/// told: bit k is set if edge k has been reported with another child.
 void FamilyPassOrTessellate::decide_child(Place& place, std::size_t c, unsigned& told) {
     const Family& family = place.family;
     const auto& corners = place.indices.children[c];
@@ -140,7 +140,7 @@ void FamilyPassOrTessellate::decide_child(Place& place, std::size_t c, unsigned&
     child.triangle = triangle;
 }
 
-/// A family is taken only if it has a place: its edges follow, and must not wait for one (they overtake one another).
+/// A family is accepted only if it has a place: its edges follow out of order and must not wait for a place.
 bool FamilyPassOrTessellate::take_inputs(std::uint64_t cycle) {
     bool taken = false;
     if (front_has_place_ && !places_.full()) {
@@ -168,7 +168,7 @@ bool FamilyPassOrTessellate::take_inputs(std::uint64_t cycle) {
     return taken;
 }
 
-/// The next child that leaves on an output; null: none of those decided.
+/// The next child that leaves on an output; null if no decided child does.
 FamilyPassOrTessellate::Child* FamilyPassOrTessellate::next(Next& from, bool whole) {
     for (; from.place < decided_; ++from.place, from.child = 0) {
         Place& place = places_.at(from.place);
@@ -199,7 +199,7 @@ bool FamilyPassOrTessellate::start_children(std::uint64_t cycle) {
     return started;
 }
 
-/// Families all of whose children have left their places.
+/// Closes the places of families whose children have all left.
 bool FamilyPassOrTessellate::close_places(std::uint64_t cycle) {
     bool closed = false;
     while (next_lit_.place > 0 && next_queued_.place > 0) {
@@ -264,7 +264,7 @@ std::string FamilyPassOrTessellate::describe_contents() const {
                   "; ");
 }
 
-/// Shows the family decided last: which of its children split.
+/// Shows the family decided last, and which of its children split.
 void FamilyPassOrTessellate::trace_signals(Signals& signals) const {
     Unit::trace_signals(signals);
     signals.input(from_tessellation, "from_tessellation");

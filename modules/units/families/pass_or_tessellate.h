@@ -16,22 +16,22 @@
 
 namespace tessera {
 
-/// Pass or Tessellate in a machine of families: collects what the tests found of a family's edges, and decides all its
+/// Pass or Tessellate in the family design: collects the tests' results for the edges of a family, and decides all its
 /// children.
 ///
 /// In:   each family from Tessellation, and its tested edges, in any order; the last one completes it.
-/// Out:  to Lighting a child whose edges are whole, one after another; to the Triangle Queue a child that splits, with
-///       N, T and N' of its split edges. Both in the order of the families. A base triangle is the one child of its own.
+/// Out:  to Lighting the children without split edges; to the Triangle Queue the children that split, with N, T and N'
+///       of their split edges. Both in the order of the families. A base triangle is the only child of its family.
 /// Arithmetic: logic; for culling two products of screen bits + 1 and a compare.
-/// Timing: one family per interval is decided when its last edge has come; then one child per interval leaves on each
-///       output, the first a latency later; latency 1, interval 1 by default. A child that is culled takes a turn of
-///       Lighting's.
-/// Capacity: `buffer` families (8), from their arrival until their last child has left.
+/// Timing: one family per interval is decided, when its last edge has arrived; then one child per interval leaves on
+///       each output, the first a latency later; latency 1, interval 1 by default. A culled child takes an interval of
+///       the output to Lighting.
+/// Capacity: `buffer` families (8), from arrival until the last child has left.
 /// Waits for Tessellation Tests; held back by Lighting and the Triangle Queue.
 class FamilyPassOrTessellate : public DecidingUnit {
   public:
     StreamInput<Family> from_tessellation{"from_tessellation"};
-    sc_core::sc_vector<StreamInput<TestedEdge>> from_tessellation_tests;  ///< one a lane
+    sc_core::sc_vector<StreamInput<TestedEdge>> from_tessellation_tests;  ///< one per lane
     StreamOutput<datapath::Triangle> to_triangle_queue{"to_triangle_queue"};
 
     FamilyPassOrTessellate(const sc_core::sc_module_name& name, const UnitContext& context);
@@ -51,22 +51,22 @@ class FamilyPassOrTessellate : public DecidingUnit {
         datapath::Triangle triangle;
         Way way = Way::dropped;
     };
-    /// A family, its edges' results, and then its children; functional mode: when the last edge came.
+    /// A family, its edges' results, and then its children; in functional mode, the arrival time of the last edge.
     struct Place {
         Family family;
         datapath::ChildIndices indices;
         datapath::FamilyEdges edges;
-        Parts left = 0;  // edges that have not come
+        Parts left = 0;  // edges that have not arrived
         std::array<datapath::EdgeTests, 9> found{};
         std::array<Child, 4> children{};
         sc_core::sc_time latest;
     };
-    /// Which child leaves next on an output.
+    /// The child that leaves next on an output.
     struct Next {
         std::size_t place = 0;
         int child = 0;
     };
-    /// A whole child on its way to Lighting, or to nowhere.
+    /// A child without split edges on its way to Lighting, or culled.
     struct Leaving {
         TriangleToLight triangle;
         bool culled = false;
@@ -91,8 +91,8 @@ class FamilyPassOrTessellate : public DecidingUnit {
     void end_of_elaboration() override;
 
     PerTriangle<Place> places_;
-    bool front_has_place_ = false;  // the family at the input, which stays there while no place is free
-    std::size_t decided_ = 0;       // of these, the first so many
+    bool front_has_place_ = false;  // the family at the input has a place; it stays there while no other is free
+    std::size_t decided_ = 0;       // families in places_ that are decided: the first ones
     std::uint64_t next_decision_ = 0;
     Next next_lit_, next_queued_;
     ElasticPipeline<Leaving> lit_;

@@ -41,7 +41,7 @@ FamilySequenceTests::FamilySequenceTests(const sc_core::sc_module_name& name, co
     }
 }
 
-/// Places an edge where it waits next.
+/// Moves an edge to where it waits next.
 void FamilySequenceTests::decided(const Edge& edge, Next next) {
     if (next == Next::normal_test)
         for_normal_.push(edge);
@@ -51,7 +51,7 @@ void FamilySequenceTests::decided(const Edge& edge, Next next) {
         leaving_.push(edge.tested);
 }
 
-/// Takes an edge whose cheap tests have decided, one a cycle and lane.
+/// Accepts an edge whose cheap tests have decided, one per cycle and lane.
 bool FamilySequenceTests::take_edge(std::size_t lane, std::uint64_t cycle) {
     if (taken_ == places_ || normal_operands[lane].empty() || height_operands[lane].empty() ||
         from_tex_coord_test[lane].empty() || from_view_test[lane].empty())
@@ -83,7 +83,7 @@ bool FamilySequenceTests::take_edge(std::size_t lane, std::uint64_t cycle) {
     return true;
 }
 
-/// Each test answers in the order in which it was asked.
+/// Each test returns its results in the order of its operands.
 bool FamilySequenceTests::take_results() {
     bool taken = false;
     const auto take = [&](Ring<Edge>& in_test, auto& input, auto&& next) {
@@ -102,7 +102,7 @@ bool FamilySequenceTests::take_results() {
     return taken;
 }
 
-/// The oldest edge to the next Normal Test that is free.
+/// Sends the oldest edge to the next free Normal Test.
 bool FamilySequenceTests::send_to_normal_test() {
     if (for_normal_.empty())
         return false;
@@ -130,7 +130,7 @@ bool FamilySequenceTests::send_to_summed_height_test() {
     return true;
 }
 
-/// Decided edges, one a cycle and lane.
+/// Sends decided edges on, one per cycle and lane.
 bool FamilySequenceTests::leave(std::uint64_t cycle) {
     bool left = false;
     for (std::size_t k = 0; k < lanes_.size() && !leaving_.empty(); ++k) {

@@ -12,27 +12,27 @@
 
 namespace tessera {
 
-/// Sequence Tests in a machine of families. Several lanes of cheap tests share one or more Normal Tests and the Summed
-/// Height Test. An edge leaves as soon as it is decided: Pass or Tessellate takes a family's edges in any order.
+/// Sequence Tests in the family design. Several lanes of cheap tests share one or more Normal Tests and the Summed
+/// Height Test. An edge leaves as soon as it is decided: Pass or Tessellate accepts a family's edges in any order.
 ///
-/// In:   from each lane what the two table tests need of an edge, and the cheap tests' results; each table test's
-///       results.
+/// In:   from each lane the operands of the two table tests and the results of the cheap tests; the results of the
+///       table tests.
 /// Out:  operands to the Normal Tests and to the Summed Height Test; TestedEdge, once, on any lane: an edge with the
 ///       tests that were evaluated.
 /// Arithmetic: none.
-/// Timing: one edge a cycle and lane in and out, no latency of its own.
-/// Capacity: `edges_in_sequence` edges (32) between their cheap tests' results and their turn to leave;
-///       `results_buffer` at each input.
-/// Waits for nothing but its inputs; held back by the Normal Tests, the Summed Height Test and Pass or Tessellate.
+/// Timing: one edge per cycle and lane in and out, no latency of its own.
+/// Capacity: `edges_in_sequence` edges (32), from their cheap tests' results until they leave; `results_buffer` at each
+///       input.
+/// Waits only for its inputs; held back by the Normal Tests, the Summed Height Test and Pass or Tessellate.
 class FamilySequenceTests : public SequencingUnit {
   public:
-    // One a lane.
+    // One per lane.
     sc_core::sc_vector<StreamInput<NormalOperands>> normal_operands;
     sc_core::sc_vector<StreamInput<HeightOperands>> height_operands;
     sc_core::sc_vector<StreamInput<TexCoordResult>> from_tex_coord_test;
     sc_core::sc_vector<StreamInput<ViewResult>> from_view_test;
     sc_core::sc_vector<StreamOutput<TestedEdge>> to_pass_or_tessellate;
-    // One a Normal Test.
+    // One per Normal Test.
     sc_core::sc_vector<StreamOutput<NormalOperands>> to_normal_test;
     sc_core::sc_vector<StreamInput<NormalResult>> from_normal_test;
 
@@ -48,7 +48,7 @@ class FamilySequenceTests : public SequencingUnit {
         std::uint64_t next_in = 0, next_out = 0;
         TestedEdge leaving;
     };
-    /// Of a Normal Test.
+    /// The edges of one Normal Test.
     struct Normal {
         Ring<Edge> in_test;
         NormalOperands offered;
@@ -66,7 +66,7 @@ class FamilySequenceTests : public SequencingUnit {
 
     std::vector<Lane> lanes_;
     std::size_t places_;
-    std::size_t taken_ = 0;  // of the places
+    std::size_t taken_ = 0;  // places in use
     Ring<Edge> for_normal_, for_height_;
     std::vector<Normal> normals_;
     Ring<Edge> in_height_;

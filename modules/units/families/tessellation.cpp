@@ -54,7 +54,7 @@ void FamilyTessellation::take(Joined& joined, const ScreenPoint& part) {
     }
 }
 
-/// The inserted vertices, the diagonal, and the new edges.
+/// Determines the inserted vertices, the diagonal, and the new edges.
 void FamilyTessellation::tessellate(const Joined& joined, Sent& sent) {
     const datapath::Triangle& triangle = joined.taken.triangle;
     Family& family = sent.family;
@@ -130,7 +130,7 @@ FamilyTessellation::Branch& FamilyTessellation::lane_of(Parts part) {
     return *std::find_if(lanes_.begin(), lanes_.end(), [&](const Branch& lane) { return (lane.takes & part) != 0; });
 }
 
-/// Takes the parts that have come. True: a triangle has all of them.
+/// Takes the parts that have arrived. Returns true if a triangle has all its parts.
 bool FamilyTessellation::join() {
     while (joined_.empty() || joined_.oldest().left != 0) {
         if (from_transform.empty())
@@ -147,7 +147,7 @@ bool FamilyTessellation::join() {
     return true;
 }
 
-/// True: Pass or Tessellate has taken it, and has a place for its edges.
+/// Returns true if Pass or Tessellate has accepted the family, and so has a place for its edges.
 bool FamilyTessellation::send_family() {
     if (family_sent_)
         return to_pass_or_tessellate.free();
@@ -155,7 +155,7 @@ bool FamilyTessellation::send_family() {
     return to_pass_or_tessellate.send(sent_.family);
 }
 
-/// True: nothing left to send, and nothing on offer.
+/// Returns true if nothing is left to send and nothing is on offer.
 bool FamilyTessellation::send_parts(Branch& branch, std::uint64_t cycle) {
     if (!branch.output->free())
         return false;

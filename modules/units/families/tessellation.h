@@ -13,25 +13,25 @@
 
 namespace tessera {
 
-/// Tessellation in a machine of families: stands before the tests. It joins a triangle that is to be split with its
-/// midpoints, chooses the diagonal, and sends the new edges of its children to the tests, each once. A base triangle is
-/// joined with its vertices; its three edges are new.
+/// Tessellation in the family design, upstream of the tests. It joins a triangle that will be split with its midpoints,
+/// chooses the diagonal, and sends each new edge of the children to the tests once. A base triangle is joined with its
+/// vertices; its three edges are new.
 ///
 /// In:   each triangle from Get Triangle, and its parts from Transform; the last part completes it.
-/// Out:  to Pass or Tessellate the triangle and its inserted vertices; when it has taken them, to Tessellation Tests the
-///       edges, every n-th to each of n lanes.
+/// Out:  to Pass or Tessellate the triangle and its inserted vertices; once these are accepted, to Tessellation Tests
+///       the edges, every n-th to each of n lanes.
 /// Arithmetic: wiring; with the `shorter` diagonal two Manhattan lengths and a compare. New vertices' generations
 ///       saturate (counted), which can only happen with the Generation Test off.
 /// Timing: the family and the first edge of each lane a latency after the last part arrived, then one per
 ///       interval; latency 1, interval 1 by default.
-/// Capacity: one triangle that is being joined and one whose edges are being sent; triangles wait at the input from Get
+/// Capacity: one triangle being joined and one whose edges are being sent; triangles wait at the input from Get
 ///       Triangle until their first part arrives (triangles_ahead_of_parts).
 /// Waits for Transform; held back by Tessellation Tests and Pass or Tessellate.
 class FamilyTessellation : public TessellatingUnit {
   public:
     StreamInput<TakenTriangle> from_get_triangle{"from_get_triangle"};
     StreamInput<ScreenPoint> from_transform{"from_transform"};
-    sc_core::sc_vector<StreamOutput<TestOperands>> to_tessellation_tests;  ///< one a lane
+    sc_core::sc_vector<StreamOutput<TestOperands>> to_tessellation_tests;  ///< one per lane
     StreamOutput<Family> to_pass_or_tessellate{"to_pass_or_tessellate"};
 
     FamilyTessellation(const sc_core::sc_module_name& name, const UnitContext& context);
@@ -49,7 +49,7 @@ class FamilyTessellation : public TessellatingUnit {
     Begun begun() const override { return {activity_.items_in(), sent_.family.origin}; }
 
   private:
-    /// A triangle whose parts are coming; functional mode: when the last one came.
+    /// A triangle whose parts are arriving; in functional mode, the time at which the last one arrived.
     struct Joined {
         TakenTriangle taken;
         Parts left = 0;
@@ -57,7 +57,7 @@ class FamilyTessellation : public TessellatingUnit {
         std::array<datapath::NewVertex, 3> made{};
         sc_core::sc_time latest;
     };
-    /// What goes to Pass or Tessellate, and the parts for the tests.
+    /// The family for Pass or Tessellate, and the parts for the tests.
     struct Sent {
         Family family;
         datapath::FamilyEdges edges;
@@ -87,12 +87,12 @@ class FamilyTessellation : public TessellatingUnit {
     PerTriangle<Joined> joined_{1};
     Sent sent_;  // timed mode: being sent
     bool sending_ = false;
-    bool family_sent_ = false;  // of these, to Pass or Tessellate
-    std::uint64_t start_ = 0;   // cycle from which they may be sent
+    bool family_sent_ = false;  // Pass or Tessellate has accepted the family
+    std::uint64_t start_ = 0;   // cycle from which sent_ may be sent
     std::vector<Branch> lanes_;
     std::uint64_t parts_sent_ = 0;
     std::size_t most_ahead_of_parts_ = 0;
-    std::uint64_t most_parts_ = 0;  // of the output that sends most of a triangle, summed up
+    std::uint64_t most_parts_ = 0;  // sum over triangles of the parts on the output that sends most
     const sc_core::sc_object* transform_ = nullptr;
 
     void end_of_elaboration() override;
