@@ -1,7 +1,7 @@
 # Finds SystemC: a target of that name, else its own CMake package, then pkg-config. Gives the target SystemC::systemc.
 #
-# SystemC refuses at link time to be mixed between C++ standards; this module finds that out at configure
-# time and says so in words, also in SystemC_NOT_FOUND_REASON.
+# SystemC built for another C++ standard fails only at link time. This module detects that at configure time
+# and reports it, also in SystemC_NOT_FOUND_REASON.
 set(SystemC_NOT_FOUND_REASON
   "neither its CMake package SystemCLanguage nor pkg-config's systemc is there. On Debian 12: scripts/install, \
 or apt-get install libsystemc-dev pkg-config. For a SystemC of your own: -DSystemCLanguage_DIR=... or \
@@ -28,20 +28,20 @@ else()
   endif()
 endif()
 
-# In a function, for variables of its own.
+# A function, to have local variables.
 function(tessera_check_systemc_links)
   get_target_property(imported SystemC::systemc IMPORTED)
   if(NOT imported)
-    return()  # built in the same build: not there yet
+    return()  # part of the same build, so it does not exist yet
   endif()
-  # The standard of targets that need C++17 at least.
+  # The standard of targets that require at least C++17.
   if(NOT CMAKE_CXX_STANDARD)
     set(CMAKE_CXX_STANDARD ${CMAKE_CXX_STANDARD_DEFAULT})
   endif()
   if(NOT CMAKE_CXX_STANDARD MATCHES "^(17|2[0-9])$")
     set(CMAKE_CXX_STANDARD 17)
   endif()
-  # The result is kept per standard, and a failure is not kept at all: a second configure must not pass over it.
+  # The result is cached per standard, and a failure is not cached: the next configure must detect it again.
   set(systemc_links TESSERA_SYSTEMC_LINKS_WITH_CXX${CMAKE_CXX_STANDARD})
   include(CheckCXXSourceCompiles)
   include(CMakePushCheckState)

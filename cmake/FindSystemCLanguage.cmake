@@ -1,3 +1,3 @@
-# For packages that ask for SystemC by the name of its own CMake package, which Debian's lacks: CCI's does.
+# For packages such as CCI that look for SystemC's own CMake package, which Debian does not provide.
 find_package(SystemC QUIET)
 set(SystemCLanguage_FOUND ${SystemC_FOUND})

@@ -2,8 +2,8 @@
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
-# tessera_component(NAME FOLDER [OPTIONAL] NEED...): adds the folder of a component if all it needs is there: packages, and
-# earlier components. An error if it is not, but TESSERA_COMPONENTS asks for it or, unless it is OPTIONAL, the testbench.
+# tessera_component(NAME FOLDER [OPTIONAL] NEED...): adds the folder of a component if all packages and earlier components
+# it needs exist. If not, an error if TESSERA_COMPONENTS or, unless it is OPTIONAL, the testbench requires it.
 macro(tessera_component name folder)
   set(tessera_required "")
   set(tessera_missing "")
@@ -43,15 +43,15 @@ macro(tessera_component name folder)
 endmacro()
 
 # tessera_add_component(NAME SOURCES ... LIBRARIES ... PRIVATE_LIBRARIES ... PACKAGES ... EXCEPT ...): tessera_NAME, with
-# the headers of this folder; without SOURCES header only. LIBRARIES: also the client's. PRIVATE_LIBRARIES: only to
-# compile it, so header only. PACKAGES: those of LIBRARIES. EXCEPT: subfolders that are components of their own.
+# the headers of this folder; without SOURCES header-only. LIBRARIES: also used by clients. PRIVATE_LIBRARIES: header-only
+# ones, used to compile it. PACKAGES: those of LIBRARIES. EXCEPT: subfolders that are separate components.
 function(tessera_add_component name)
   cmake_parse_arguments(arg "" "" "SOURCES;LIBRARIES;PRIVATE_LIBRARIES;PACKAGES;EXCEPT" ${ARGN})
   set(target tessera_${name})
   if(arg_SOURCES)
     set(scope PUBLIC)
     add_library(${target} STATIC ${arg_SOURCES})
-    # Most of the time goes into headers; joined sources compile them once.
+    # Headers take most of the compile time; joined sources compile them once.
     set_target_properties(${target} PROPERTIES UNITY_BUILD ${TESSERA_ONE_UNIT})
     foreach(library tessera_options ${arg_PRIVATE_LIBRARIES})
       target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:${library}>)
@@ -67,7 +67,7 @@ function(tessera_add_component name)
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/tessera>)
   target_link_libraries(${target} ${scope} ${arg_LIBRARIES})
 
-  # What a component needs comes before it.
+  # Dependencies precede the components that need them.
   set(needs ${arg_LIBRARIES})
   list(FILTER needs INCLUDE REGEX "^tessera_")
   list(TRANSFORM needs REPLACE "^tessera_" "")

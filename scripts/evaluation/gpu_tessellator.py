@@ -3,17 +3,17 @@ import numpy as np
 
 from emitted_mesh import on_screen
 
-MOST = 64  # of a factor
+MOST = 64  # largest factor
 
 
 def factor_of(length, pixels):
-    """Of an edge so many pixels long on the screen, for parts of about `pixels`."""
+    """The factor of an edge, from its length on the screen, for parts of about `pixels`."""
     return min(MOST, max(1, round(length / pixels)))
 
 
 def pattern(edges):
-    """Of a patch with these factors on the edges 0-1, 1-2, 2-0, and the greatest of them inside: barycentric coordinates of
-    its points, and triangles. Concentric triangles, two parts fewer an edge from each to the next."""
+    """Barycentric coordinates and triangles of a patch with these factors on the edges 0-1, 1-2, 2-0, and the greatest of
+    them inside: concentric triangles, each with two parts fewer per edge than the previous one."""
     inside = max(edges)
 
     def ring(k):
@@ -43,7 +43,7 @@ def pattern(edges):
 
 
 def strip(outer, inner):
-    """Triangles between two sides of any numbers of parts."""
+    """Triangles between two sides with any numbers of parts."""
     i, j, triangles = 0, 0, []
     while i + 1 < len(outer) or j + 1 < len(inner):
         outer_next = (i + 1) / (len(outer) - 1) if i + 1 < len(outer) else 2
@@ -64,7 +64,7 @@ def screen_lengths(positions, camera):
 
 
 def write_obj(path, base, length, pixels):
-    """A plane's triangles, undisplaced, cut by their edges' lengths on the screen. Both patches of an edge cut it alike."""
+    """A plane's triangles, undisplaced, cut by their edges' lengths on the screen. Both patches of an edge cut it equally."""
     lines, faces, numbers, cut = ["vn 0 0 1\n"], [], {}, {}
     corners = np.hstack([base.positions[:, :2], base.texture])
     for a, b, c in base.triangles:

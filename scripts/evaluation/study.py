@@ -16,7 +16,7 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 
 
 class ProgramError(Exception):
-    """A command ended with an unexpected exit code, or came to no end."""
+    """A command ended with an unexpected exit code, or did not end."""
 
 
 class Study:
@@ -79,7 +79,7 @@ class Study:
                 for run in self.runs for command in run.task.commands]
 
     def nameless(self, text):
-        """Removes this machine's paths."""
+        """Removes paths of this machine."""
         for run in self.runs:
             text = text.replace(str(run.files), f"{self.place}/{run.name}")
         return text.replace(f"{ROOT}/", "").replace(str(self.program), "tessera")

@@ -41,7 +41,7 @@ def options_from(arguments):
 
 
 def probe(sweep, planner, store, designs):
-    """Runs a design of each scene, unless there is a result; checks the figures' names. Returns seconds a run by scene."""
+    """Runs a design of each scene, unless there is a result; checks the figures' names. Returns seconds per run by scene."""
     seconds, known, tried = {}, set(), []
     for scene in sweep.scenes:
         here = [design for design in designs if design.scene == scene and design.key]

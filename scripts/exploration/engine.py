@@ -10,8 +10,8 @@ from pathlib import Path
 
 from plan_file import write_plan
 
-SHORTEST_JOB = 2  # seconds: runs that take less share a job, since Snakemake and Python need a tenth of a second for one
-# Jobs that Snakemake is given at a time: its scheduler looks at every waiting one whenever one ends (README.md).
+SHORTEST_JOB = 2  # seconds: shorter runs share a job, since Snakemake and Python need 0.1 s for each
+# Jobs passed to Snakemake at a time: its scheduler examines every waiting one whenever one ends (README.md).
 MOST_JOBS = 2000
 HERE = Path(__file__).resolve().parent
 
@@ -60,14 +60,14 @@ def lock(folder, script):
 
 
 def call_snakemake(options, words, count, cores, report):
-    """Runs Python with these words and a number, for each number below count. Snakemake's exit code; its output goes to
+    """Runs Python with these arguments and a number, for each number below count. Snakemake's exit code; its output goes to
     snakemake.log."""
-    # Absolute: jobs of a cluster run wherever the scheduler starts them.
+    # Absolute: a cluster's scheduler may start jobs in any working directory.
     folder = options.output.resolve()
     config = {"count": count, "finished": f"{folder}/finished",
               "command": shlex.join([sys.executable, "-B", *map(str, words)])}
     (folder / "engine.json").write_text(json.dumps(config), encoding="utf-8")
-    shutil.rmtree(folder / "finished", ignore_errors=True)  # of a sweep that was interrupted
+    shutil.rmtree(folder / "finished", ignore_errors=True)  # from an interrupted sweep
     command = [shutil.which("snakemake"), "--snakefile", HERE / "Snakefile", "--directory", folder,
                "--configfile", folder / "engine.json", "--ignore-incomplete", "--drop-metadata", "--nolock", "--keep-going",
                "--rerun-triggers", "mtime", "--scheduler", "greedy", "--quiet"]
@@ -76,7 +76,7 @@ def call_snakemake(options, words, count, cores, report):
     else:
         command += ["--cores", cores]
     with open(folder / "snakemake.log", "a", encoding="utf-8") as log:
-        # Snakemake ends with this process, even if that is killed.
+        # Snakemake ends with this process, even if this process is killed.
         with subprocess.Popen(["setpriv", "--pdeathsig", "TERM", *map(str, command)], stdout=log, stderr=log) as process:
             try:
                 while process.poll() is None:
@@ -89,9 +89,9 @@ def call_snakemake(options, words, count, cores, report):
 
 
 def in_jobs(tasks, group, cores):
-    """Lists of tasks, from pairs of seconds and task: of `group` tasks each, or of as many as take SHORTEST_JOB."""
+    """Groups tasks, given as pairs of seconds and task: `group` tasks each, or as many as take SHORTEST_JOB."""
     room, jobs = 0, []
-    # Few tasks are spread over the cores.
+    # A small number of tasks is spread over the cores.
     most = group or min(SHORTEST_JOB, sum(seconds for seconds, _ in tasks) / (4 * cores))
     for seconds, task in tasks:
         if room <= 0:
@@ -103,7 +103,7 @@ def in_jobs(tasks, group, cores):
 
 
 def run_tasks(options, store, tasks, longest=None):
-    """Computes the results that are missing. tasks: pairs of the seconds that one may take, and the task."""
+    """Computes the missing results. tasks: pairs of the seconds that a task may take, and the task."""
     missing = list({task.key: (seconds, task) for seconds, task in tasks if not store.has(task.key)}.values())
     if not missing:
         return
@@ -114,7 +114,7 @@ def run_tasks(options, store, tasks, longest=None):
     for begin in range(0, len(jobs), MOST_JOBS):
         portion = jobs[begin:begin + MOST_JOBS]
         write_plan(plan, portion)
-        # -S: no packages of the system are needed, and looking for them takes time.
+        # -S: system packages are not needed, and the search for them takes time.
         words = ["-S", HERE / "run_job.py", store.folder.resolve(), plan, longest or 0]
         codes.append(call_snakemake(options, words, len(portion), options.jobs, progress.report))
     done = progress.done()

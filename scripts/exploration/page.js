@@ -73,7 +73,7 @@ function drawParallel() {
         const distinct = [...new Set(values.map((value) => JSON.stringify(value)))];
         if (isNumber(column, shown) && (column.kind !== "axis" || distinct.length > 12))
             return {label, values, column};
-        // Values of an axis stand at equal distances, in their order.
+        // Values of an axis are equally spaced, in order.
         const order = isNumber(column, shown) ? distinct.map(Number).sort((a, b) => a - b).map(String) : distinct;
         return {label, column, values: values.map((value) => order.indexOf(JSON.stringify(value))),
                 tickvals: order.map((_, k) => k), ticktext: order.map((value) => text(JSON.parse(value))), range: [0, Math.max(1, order.length - 1)]};
@@ -126,7 +126,7 @@ function drawList() {
         }).join("") + "</tr>").join("");
 }
 
-/** Rows of a table with one column a design; those that differ are marked. */
+/** Rows of a table with one column per design; those that differ are marked. */
 function compared(name, entries, designs) {
     return `<tr class="group"><th>${name}</th></tr>` + entries.map(([label, values]) => {
         const differs = designs.length > 1 && new Set(values.map(text)).size > 1;
@@ -168,7 +168,7 @@ function chooseScene() {
     selection = null;
     drawScatter();
     drawList();
-    // After the first picture: it needs a WebGL context, which takes its time.
+    // After the first picture, since creating a WebGL context takes time.
     requestAnimationFrame(() => setTimeout(() => drawParallel().then(() => {
         document.body.dataset.complete = performance.now();
     })));

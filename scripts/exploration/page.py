@@ -11,11 +11,11 @@ from program import QUIET, set_options
 from sweep_file import JOBS
 
 HERE = Path(__file__).resolve().parent
-MOST_TIMING_TABLES = 2000  # 4 kB each; beyond, only designs on a front have theirs
+MOST_TIMING_TABLES = 2000  # 4 kB each; with more runs only designs on a front have one
 
 
 def command(design, measures_error):
-    """As a user would repeat the run, from the project's folder."""
+    """The command that repeats the run, from the project's folder."""
     job = design.job.stem if design.job.parent == JOBS else design.job.name
     settings = {key: value for key, value in design.settings.items() if QUIET.get(key) != value}
     if not measures_error:

@@ -6,7 +6,7 @@ from program import Task
 
 
 def write_plan(path, jobs):
-    """jobs: a list of tasks each."""
+    """jobs: a list of tasks for each job."""
     part = path.with_name(f"{path.name}.part")
     part.unlink(missing_ok=True)
     with sqlite3.connect(part) as database:

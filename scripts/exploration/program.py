@@ -7,16 +7,16 @@ import subprocess
 from collections import namedtuple
 from pathlib import Path
 
-# Files that no figure needs. A sweep's `set` may ask for them.
+# Files that no figure needs. A sweep's `set` may enable them.
 QUIET = {"output.picture": False, "output.ply": False, "output.obj": False}
-FOLDER = "{folder}"  # in the words of a command: where its files go
+FOLDER = "{folder}"  # in a command's arguments: the folder for its files
 
-# Commands with one result. Each begins if the one before ended with exit code 0. `kept`: their files stay in the store.
+# Commands with one result. Each starts if the previous one ended with exit code 0. `kept`: their files stay in the store.
 Task = namedtuple("Task", "key commands kept")
 
 
 class Refused(Exception):
-    """The program does not accept a job; the text is its own."""
+    """The program does not accept a job; the text is the program's message."""
 
 
 def toml(value):
@@ -40,7 +40,7 @@ def run_commands(program, job, settings, measures_error):
 
 def effective_job(program, job, settings):
     """{key: value} of every key. Raises Refused."""
-    import tomllib  # a run does not need it
+    import tomllib  # not needed by runs
     done = subprocess.run([program, "run", *([job] if job else []), *set_options(settings), "--dump-config"],
                           capture_output=True, text=True, check=False)
     if done.returncode != 0:
@@ -59,7 +59,7 @@ def file_hash(path):
 
 
 class ContentHash:
-    """Addresses of results: hashes of the program and of what its commands read."""
+    """Addresses of results: hashes of the program and of its commands' inputs."""
 
     def __init__(self, program):
         self.version = file_hash(program)
@@ -74,7 +74,7 @@ class ContentHash:
         return self.files[path]
 
     def job(self, keys, folder):
-        """What determines a run: its effective job, and the content of the files it names, relative to the folder."""
+        """The inputs of a run: its effective job, and the content of the files it names, relative to the folder."""
         content = {key: value for key, value in keys.items() if key != "output.folder"}
         for key in ("mesh.file", "map.file"):
             if content.get(key):
@@ -95,14 +95,14 @@ def figures_of(path, prefix=""):
 
 
 def run(task, folder, longest):
-    """The result of a task: exit code, reason of a failure, figures, timing table, seconds of processor time, and what a
-    task without figures printed.
+    """The result of a task: exit code, reason of a failure, figures, timing table, seconds of processor time, and the
+    output of a task without figures.
 
-    Raises OSError or subprocess.TimeoutExpired if a command came to no end of its own.
+    Raises OSError or subprocess.TimeoutExpired if a command did not end by itself.
     """
     begin = resource.getrusage(resource.RUSAGE_CHILDREN)
     for command in task.commands:
-        # In its own folder: that of the sweep may be removed while a run of a killed one has not ended.
+        # In its own folder: a sweep's folder may be removed while a run of a killed sweep is still active.
         done = subprocess.run([word.replace(FOLDER, str(folder)) for word in command], capture_output=True, text=True,
                               check=False, timeout=longest, cwd=folder)
         if done.returncode < 0:

@@ -8,7 +8,7 @@ from store import Store
 
 
 def perform(store, task, longest):
-    """Whether a result is stored; what the program itself ended is one, whatever its exit code."""
+    """Whether a result is stored; a run that the program itself ended is a result, with any exit code."""
     try:
         with store.folder_for(task) as folder:
             store.write(task.key, run(task, folder, longest))
@@ -22,7 +22,7 @@ def perform(store, task, longest):
 def main():
     folder, plan, longest, job = sys.argv[1:]
     store = Store(folder)
-    # Another sweep, or this job before its node failed, may have left some.
+    # Another sweep, or this job before its node failed, may have stored some.
     missing = [task for task in read_plan(plan, int(job)) if not store.has(task.key)]
     return 0 if all([perform(store, task, float(longest) or None) for task in missing]) else 1
 

@@ -22,19 +22,19 @@ optuna.logging.set_verbosity(optuna.logging.WARNING)
 def open_study(planner, storage, number):
     sweep = planner.sweep
     if "://" not in storage:
-        # A file that only grows: works on network file systems, too.
+        # An append-only file: works on network file systems, too.
         storage = optuna.storages.JournalStorage(optuna.storages.JournalFileStorage(storage))
-    # Every worker draws designs of its own.
+    # Every worker samples different designs.
     sampler = optuna.samplers.TPESampler(seed=sweep.search["seed"] + number, multivariate=True, constant_liar=True,
                                          n_startup_trials=max(10, 2 * len(sweep.axes)))
-    # Another program or another sweep file is another study: its designs have other results.
+    # Another program or sweep file is a separate study, since its designs have other results.
     name = f"{sweep.name} {planner.hash.address(sweep.text)}"
     return optuna.create_study(study_name=name, storage=storage, load_if_exists=True, sampler=sampler,
                                directions=["minimize"] * len(sweep.objectives))
 
 
 def designs_of(study, finished=True):
-    """{key: (scene, positions)} of the designs tried."""
+    """{key: (scene, positions)} of the evaluated designs."""
     taken = [trial.user_attrs["design"] for trial in study.get_trials(deepcopy=False)
              if "design" in trial.user_attrs and "skipped" not in trial.user_attrs
              and (trial.state.is_finished() or not finished)]
@@ -42,14 +42,14 @@ def designs_of(study, finished=True):
 
 
 def release(study):
-    """Gives up trials that killed workers left."""
+    """Fails trials that killed workers left unfinished."""
     for trial in study.get_trials(deepcopy=False):
         if not trial.state.is_finished():
             study.tell(trial.number, state=optuna.trial.TrialState.FAIL)
 
 
 def positions_of(trial, sweep):
-    """Positions on the axes. Those of numbers have an order, those of words have none."""
+    """Positions on the axes. Numbers are ordered, words are not."""
     positions = []
     for index, axis in enumerate(sweep.axes):
         ordered = all(isinstance(point.cells[0], (int, float)) for point in axis.points) and len(axis.columns) == 1
@@ -87,7 +87,7 @@ def main():
     sweep = read_sweep(Path(path))
     planner, store = Planner(sweep, Path(program)), Store(folder)
     study = open_study(planner, storage, int(number))
-    # Trials in progress count: the workers together stop at the number. Few new designs may be left.
+    # Trials in progress count, so that all workers together stop at the number. Few new designs may remain.
     while len(designs_of(study, finished=False)) < int(runs) and len(study.get_trials(deepcopy=False)) < 5 * int(runs):
         run_trial(study, planner, store, int(runs))
     return 0

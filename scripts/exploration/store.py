@@ -25,12 +25,12 @@ class Store:
 
     @contextmanager
     def folder_for(self, task):
-        """An empty folder. Files that are kept are written in their place, since they name one another."""
+        """An empty folder. Kept files are written in their final place, since they refer to one another."""
         if task.kept:
             folder = self.files(task.key)
             folder.parent.mkdir(parents=True, exist_ok=True)
             with open(f"{folder}.lock", "w", encoding="utf-8") as lock:
-                # The process of an evaluation that was killed may still be at it.
+                # The process of a killed evaluation may still be writing.
                 fcntl.flock(lock, fcntl.LOCK_EX)
                 shutil.rmtree(folder, ignore_errors=True)
                 folder.mkdir()
@@ -50,7 +50,7 @@ class Store:
         return self.path(key).with_name(f"{key}.failure")
 
     def write_failure(self, key, reason):
-        """Why a run came to no result. It is tried again by the next sweep."""
+        """Why a run gave no result. The next sweep repeats it."""
         self._replace(self._failure(key), reason.encode())
 
     def failure(self, key):

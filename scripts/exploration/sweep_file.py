@@ -17,7 +17,7 @@ class SweepError(Exception):
 
 @dataclass
 class Point:
-    """A position on an axis. `cells` are its entries in the table, one a column of the axis."""
+    """A position on an axis. `cells` are its entries in the table, one per column of the axis."""
 
     cells: tuple
     settings: dict
@@ -56,7 +56,7 @@ class Sweep:
 
     @property
     def wanted(self):
-        """Figures of the table: those asked for, derived ones, objectives."""
+        """Figures of the table: requested ones, derived ones, objectives."""
         return list(dict.fromkeys([*self.figures, *self.derived, *self.objectives]))
 
     @property
@@ -93,7 +93,7 @@ def values_of(table):
         raise ValueError("`step` is above 0, or `factor` above 1 and `from` above 0")
     values = []
     while True:
-        # Multiples of the step: sums of it would not end at `to`.
+        # Multiples of the step, since its sums would miss `to` by rounding.
         value = low + len(values) * step if step else low * factor ** len(values)
         if value > high * (1 + 1e-12) or len(values) > LONGEST_AXIS:
             break

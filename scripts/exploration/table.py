@@ -11,7 +11,7 @@ class Row:
     design: object
     status: str  # ok, failed, refused, no result
     reason: str
-    figures: dict  # of Sweep.wanted; a figure that the run did not give is absent
+    figures: dict  # of Sweep.wanted; a figure missing from the run is absent
     front: bool = False
     timing: str = ""
     bottleneck: str = ""
@@ -47,7 +47,7 @@ def key_units(program):
 
 
 def measured(sweep, result):
-    """({figure: value}, {figure: unit}) of what the sweep wants of a result."""
+    """({figure: value}, {figure: unit}) that the sweep requests of a result."""
     values = {name: value for name, (value, _) in result["figures"].items()}
     units = {name: unit for name, (_, unit) in result["figures"].items()}
     for name, derived in sweep.derived.items():
@@ -68,7 +68,7 @@ def costs(sweep, figures):
 
 
 def front_of(costs_of):
-    """Indices of the costs that none dominates: nothing is as good in all objectives and better in one."""
+    """Indices of the non-dominated costs: no other is as good in all objectives and better in one."""
     front = []
     for index in sorted(range(len(costs_of)), key=lambda k: costs_of[k]):
         own = costs_of[index]

@@ -25,7 +25,7 @@ def check(condition, words):
 
 def open_browser():
     options = webdriver.ChromeOptions()
-    # Software rendering of WebGL, which the parallel coordinates need.
+    # The parallel coordinates need WebGL, rendered in software.
     for argument in ("--headless=new", "--no-sandbox", "--window-size=1500,1300", "--enable-unsafe-swiftshader",
                      "--disable-dev-shm-usage"):
         options.add_argument(argument)
@@ -34,14 +34,14 @@ def open_browser():
 
 
 def open_page(driver, address):
-    """Seconds, as the browser counts them, until plot and list are usable, and until the parallel coordinates are."""
+    """Seconds, measured by the browser, until plot and list are usable, and until the parallel coordinates are."""
     driver.get(address)
     WebDriverWait(driver, 60, 0.05).until(lambda d: d.execute_script("return document.body.dataset.complete"))
     return tuple(driver.execute_script(f"return Number(document.body.dataset.{mark}) / 1000") for mark in ("ready", "complete"))
 
 
 def requests(driver):
-    """Addresses asked for, other than the page itself."""
+    """Requested addresses other than the page itself."""
     sent = [json.loads(entry["message"])["message"] for entry in driver.get_log("performance")]
     urls = [each["params"]["request"]["url"] for each in sent if each["method"] == "Network.requestWillBeSent"]
     return [url for url in urls if url.startswith(("http", "ws", "ftp"))]
@@ -54,7 +54,7 @@ def points(driver, front):
 
 
 def colours(driver):
-    """How many lines of the parallel coordinates are grey (0), selected (1), selected and on the front (2)."""
+    """Numbers of lines of the parallel coordinates that are grey (0), selected (1), selected and on the front (2)."""
     of = driver.execute_script("return Array.from(document.getElementById('parallel').data[0].line.color)")
     return [of.count(k) for k in range(3)]
 

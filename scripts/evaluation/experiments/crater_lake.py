@@ -85,7 +85,7 @@ def reference_curves(path, surface=None):
 
 def vertical_errors(mesh, height, scale=1000):
     """At every grid point (texel centre, row 0 on top): the mesh's height minus the map's, in m, and its triangle; -1 without
-    one. scale: m a model unit."""
+    one. scale: metres per model unit."""
     rows, columns = height.shape
     errors, owner = np.zeros(height.shape), np.full(height.shape, -1)
     x, y, z = (values[mesh.triangles].T for values in (mesh.texture[:, 0] * columns - 0.5, (1 - mesh.texture[:, 1]) * rows - 0.5,
@@ -129,8 +129,8 @@ def worst_spot(run, finest):
 
 
 def squares_by(run, height, regions):
-    """The shares in a mesh's squared vertical error: by the reason why a triangle was not split, by region, by
-    generation, and of the worst hundredth of the grid points. Also triangles and RMS error by reason."""
+    """Shares of a mesh's squared vertical error: by the reason why a triangle was not split, by region, by
+    generation, and of the worst 1 % of the grid points. Also triangles and RMS error by reason."""
     errors, owner = vertical_errors(run.mesh, height)
     covered = owner >= 0
     square = np.where(covered, errors, 0) ** 2
@@ -150,7 +150,7 @@ def squares_by(run, height, regions):
 
 
 def at_equal_triangles(points, triangles, column=1):
-    """A reference curve's RMS (2: largest error) at a number of triangles, interpolated by a power law; None outside its points."""
+    """A reference curve's RMS (2: largest) error at a number of triangles, interpolated by a power law; None outside its points."""
     count, error = np.log([point[0] for point in points]), np.log([point[column] for point in points])
     if not count[0] <= np.log(triangles) <= count[-1]:
         return None

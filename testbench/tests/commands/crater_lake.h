@@ -7,15 +7,15 @@
 
 namespace tessera {
 
-/// Crater Lake through the machine from 24 base triangles, as a user runs it.
+/// Runs Crater Lake from 24 base triangles, as a user does.
 struct CraterLakeRun {
     std::uint64_t triangles;
     double rms, largest;                // m, vertically at grid points
-    double rms_pixels, largest_pixels;  // of those in the picture
+    double rms_pixels, largest_pixels;  // the same in pixels, of the points in the picture
 
     static constexpr double depth = 945;  // m, from the lake's bottom to the rim: full scale
 
-    /// Of the mesh with these settings beside; both models' checks have passed.
+    /// Figures of the mesh with these additional settings; both commands must succeed.
     CraterLakeRun(const TestFolder& here, const Arguments& settings) {
         const std::string job = (source_folder() / "testbench/examples/jobs/crater_lake_24.toml").string();
         succeed(Arguments{"run", job} +

@@ -1,8 +1,8 @@
-// To be preloaded into a program: makes its operations on files fail, or a signal come in the midst of them.
+// Preloaded into a program: makes its file operations fail, or sends it a signal between them.
 //
-// TESSERA_FAILING_DISK=N:WHAT does WHAT at the N-th of the calls that open for writing, write, synchronise, rename or
-// make a folder: "full" (no space left: every write from then on fails), "error" (that one fails), or the name of a
-// signal, which the process is sent before the call. TESSERA_DISK_LOG=FILE: how many calls there were.
+// TESSERA_FAILING_DISK=N:WHAT does WHAT at the N-th call that opens for writing, writes, synchronises, renames or makes
+// a folder: "full" (no space left: every write from then on fails), "error" (only that call fails), or the name of a
+// signal, sent to the process before the call. TESSERA_DISK_LOG=FILE: receives the number of calls.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -50,7 +50,7 @@ struct Log {
     }
 } log;
 
-/// 0, or the error this call has to fail with.
+/// The error with which this call must fail, or 0.
 int next_error(bool takes_space) {
     static const Plan plan;
     ++calls;
@@ -64,7 +64,7 @@ int next_error(bool takes_space) {
                        : std::strcmp(plan.what, "SIGTERM") == 0 ? SIGTERM
                                                                 : SIGKILL;
     kill(getpid(), signal);
-    usleep(100'000);  // for the thread that waits for it
+    usleep(100'000);  // for the thread that waits for the signal
     return 0;
 }
 

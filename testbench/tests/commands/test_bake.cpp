@@ -68,7 +68,7 @@ TEST_CASE("bake: the job fits the domain and finds its files from its own folder
     CHECK_THAT(read_all(here.path() / "out/ball.job.toml"), Contains("file = \"../base/square.obj\""));
     succeed({"run", "out/ball.job.toml"}, here.path());
 
-    // A patch is the same map over whatever base mesh.
+    // The map of a patch does not depend on the base mesh.
     succeed({"bake", example("hills.toml").string(), "--output", "plain.pgm"}, here.path());
     succeed({"bake", example("hills.toml").string(), "--mesh", "base/job.toml", "--output", "meshed.pgm"}, here.path());
     CHECK(read_all(here.path() / "plain.pgm") == read_all(here.path() / "meshed.pgm"));

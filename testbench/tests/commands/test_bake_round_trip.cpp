@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Runs a job in functional mode, with all checks, and gives its mesh.
+/// Runs a job in functional mode, with all checks, and returns its mesh.
 RecordedMesh mesh_of_run(const std::string& job, const Arguments& settings, const fs::path& here) {
     succeed(Arguments{"run", job} +
                 set({"mode=functional", "output.picture=false", "output.obj=false", "output.folder=run"}) +
@@ -27,8 +27,8 @@ std::uint64_t invariant(const fs::path& here, const char* name) {
     return conformance.at("invariants").at(name).at("value").get<std::uint64_t>();
 }
 
-/// A square of the plane with corners at the centres of the corner texels of a map of 129 x 129 over -1..1: what is
-/// inserted lies on texel centres, seven generations deep, and reads the surface where it is itself.
+/// A square of the plane whose corners are the centres of the corner texels of a map of 129 x 129 over -1..1. Inserted
+/// vertices lie on texel centres, down to seven generations, and read the surface's height at their own position.
 const std::string centred_square = [] {
     const double end = 128 / 129.0, low = 0.5 / 129, high = 128.5 / 129;
     std::string text;
@@ -41,8 +41,8 @@ const std::string centred_square = [] {
     return text + "vn 0 0 1\nf 1/1/1 2/2/1 4/4/1\nf 1/1/1 4/4/1 3/3/1\n";
 }();
 
-/// Bakes 129 x 129 texels, runs it on the square, and requires every vertex within half a step of the 16 bits that
-/// `range` is quantised to.
+/// Bakes 129 x 129 texels, runs them on the square, and requires that every vertex is within half a step of `range`
+/// quantised to 16 bits.
 void check_round_trip(const std::string& surface, const std::string& map, double range,
                       const std::function<double(double, double)>& height) {
     const TestFolder here;
@@ -54,13 +54,13 @@ void check_round_trip(const std::string& surface, const std::string& map, double
                                            "tests.view=false", "tests.normal_threshold=0.02"},
                                           here.path());
     CHECK(mesh.triangles.size() > 1500);
-    // Positions have some 28 fraction bits here; what seven midpoints round is far below 1e-7.
+    // Positions have some 28 fraction bits here; the rounding of seven midpoints is far below 1e-7.
     const double bound = 0.5 * range / 65535 + 1e-7;
     double worst = 0;
     for (const glm::dvec3& p : mesh.positions)
         worst = std::max(worst, std::abs(p.z - height(p.x, p.y)));
     CHECK(worst <= bound);
-    CHECK(worst > 0.2 * bound);  // it is quantised
+    CHECK(worst > 0.2 * bound);  // the map is quantised
 }
 
 }  // namespace
@@ -96,7 +96,7 @@ TEST_CASE("round trip: on the default plane a vertex lies on the dome at the tex
             here.path());
     const RecordedMesh mesh = mesh_of_run("dome.job.toml", {}, here.path());
     CHECK(mesh.triangles.size() > 1000);
-    const auto centre = [](double t) {  // of the texel that t reads, in the plane -1..1
+    const auto centre = [](double t) {  // the position, in the plane -1..1, of the centre of the texel that t reads
         return (std::min(255.0, std::floor(256 * t)) + 0.5) / 128 - 1;
     };
     double worst = 0, highest = 0;
@@ -114,7 +114,7 @@ TEST_CASE("round trip: on the default plane a vertex lies on the dome at the tex
 TEST_CASE("round trip: a cylinder baked to a sphere closes at its seam, and only where the map repeats") {
     const TestFolder here;
     const fs::path examples = source_folder() / "testbench/examples/surfaces";
-    // Off the axis, so that the two sides of the seam are not each other's mirror image.
+    // Off the axis, so that the two sides of the seam do not mirror each other.
     write_all(here.path() / "ball.toml", "[quadric]\nshape = \"sphere\"\nradius = 1.4\ncentre = [0.25, 0.1, 0.05]\n");
     const std::string out = succeed({"bake", "ball.toml", "--mesh", (examples / "barrel_base.toml").string(), "--size",
                                      "512x256", "--output", "ball.pgm"},
@@ -126,8 +126,8 @@ TEST_CASE("round trip: a cylinder baked to a sphere closes at its seam, and only
     CHECK(invariant(here.path(), "border_base_edges") == 60);
     CHECK(invariant(here.path(), "cracks") == 0);
     CHECK(mesh.triangles.size() > 2000);
-    // A vertex reads the texel it lies in, up to half a texel away in both directions: 0.0062 round and 0.0039 along
-    // the axis, times the slope, at most 1.4 along and 0.3 round.
+    // A vertex reads the texel that contains it, whose centre is up to half a texel away: 0.0062 around and 0.0039
+    // along the axis, times the slope, at most 0.3 around and 1.4 along.
     double worst = 0, mean = 0;
     for (const glm::dvec3& p : mesh.positions) {
         const double off = glm::length(p - glm::dvec3(0.25, 0.1, 0.05)) - 1.4;

@@ -18,7 +18,7 @@ void run_job(const fs::path& folder, const Arguments& more) {
             folder);
 }
 
-/// Compares a run; gives error.json, in which every figure must have value, unit and description.
+/// Compares a run and returns error.json, in which every figure must have a value, a unit and a description.
 json compare(const fs::path& folder, const std::string& run) {
     const ProgramEnd end = succeed({"compare", run}, folder);
     const std::string text = read_all(folder / run / "error.txt");
@@ -68,7 +68,7 @@ TEST_CASE("compare tells the default run's error") {
     CHECK(value(error, "worst_mesh_to_reference", "base") < 18);
     CHECK_FALSE(error.at("worst_vertical").at("why_whole").at("value").get<std::string>().empty());
 
-    // Again: the same bytes. And a run of the same folder takes away what no longer holds.
+    // A second comparison writes the same bytes. A new run in the folder removes the outdated files.
     const std::string first = read_all(here.path() / "runs/half_donut/error.json");
     const std::string text = read_all(here.path() / "runs/half_donut/error.txt");
     compare(here.path(), "runs/half_donut");
@@ -132,7 +132,7 @@ TEST_CASE("compare refuses what is no run, and leaves nothing then") {
     const std::string bytes = read_all(mesh);
     write_all(mesh, bytes.substr(0, bytes.size() - 7));
     refused({"compare", "runs/half_donut"}, here.path(), {"mesh.ply", "announces"});
-    // Another job's mesh: of more base triangles than this one has.
+    // Another job's mesh, with more base triangles than this one's.
     run_job(here.path(),
             {"--set", "tests.normal_threshold=1", "--set", "mesh.columns=9", "--set", "output.folder=runs/other"});
     fs::copy_file(here.path() / "runs/other/mesh.ply", mesh, fs::copy_options::overwrite_existing);
@@ -148,7 +148,7 @@ TEST_CASE("compare tells Crater Lake's error in metres") {
                 Arguments{(source_folder() / "testbench/examples/jobs" / (name + ".toml")).string()} + more);
         return compare(here.path(), "runs/" + name);
     };
-    // The grid of 704 triangles itself, without a split.
+    // The grid of 704 triangles itself, without splits.
     const json base = run("crater_lake_704", {"--set", "tests.normal=false", "--set", "tests.summed_height=false"});
     CHECK(value(base, "measurement", "triangles") == 704);
     CHECK(value(base, "vertical", "grid_points") == 336 * 459);

@@ -43,7 +43,7 @@ TEST_CASE("the default job leaves a complete run folder whose figures agree") {
 
 TEST_CASE("the summary says which test decided, in the statistics' figures") {
     const TestFolder here;
-    // 6 edges of one quad, all split, and 24 of their children, which generation 1 stops.
+    // The 6 edges of one quad, all split, and 24 edges of their children, stopped by generation 1.
     const ProgramEnd end = succeed(
         Arguments{"run"} + set({"mode=functional", "mesh.columns=1", "mesh.rows=1", "map.source=noise", "map.width=64",
                                 "map.height=64", "tests.normal_threshold=0", "tests.summed_height=false",
@@ -76,7 +76,7 @@ TEST_CASE("a map that the mesh's quads do not divide: the run warns, and its rem
 
 TEST_CASE("two runs leave identical bytes, and so do the jobs they write down") {
     const TestFolder here;
-    // The folder's name is part of the job: the runs keep it and change the folder they start from.
+    // The folder's name is part of the job: the runs keep it and start in different working folders.
     const auto run_in = [&](const std::string& name, const Arguments& arguments) {
         fs::create_directory(here.path() / name);
         succeed(Arguments{"run"} + arguments, here.path() / name);
@@ -91,7 +91,7 @@ TEST_CASE("two runs leave identical bytes, and so do the jobs they write down") 
     CHECK(automatic_key(parse_job(first.at("job.toml"), "job.toml")).empty());
     require_same_files(first, run_in("dumped", {(here.path() / "dump.toml").string()}));
     require_same_files(first, run_in("own", {(here.path() / "first/runs/half_donut/job.toml").string()}));
-    // This one states some defaults in other words.
+    // This job states some defaults in other words.
     auto stated = run_in("file", {(source_folder() / "testbench/examples/jobs/half_donut.toml").string()});
     stated["job.toml"] = first.at("job.toml");
     require_same_files(first, stated);
@@ -116,7 +116,7 @@ TEST_CASE("a job that reads files runs again from its run folder") {
         fs::create_directory(here.path() / "elsewhere");
         succeed({"run", "../out/job.toml", "--set", "output.folder=../out"}, here.path() / "elsewhere");
         auto second = RunFolder(here.path() / "out").files();
-        // the folder's name is what was set
+        // the folder's name as it was set
         CHECK_THAT(second.at("job.toml"), Contains("folder = \"../out\""));
         second["job.toml"] = first.at("job.toml");
         require_same_files(first, second);
@@ -137,7 +137,7 @@ TEST_CASE("a run replaces what an earlier one left in its folder") {
     CHECK(fs::exists(here.path() / "out/mesh.obj"));
     write_all(here.path() / "out/notes.txt", "mine");
     succeed(small + set({"output.ply=false", "output.picture=false"}), here.path());
-    // A mesh of another job beside this one's statistics would be believed.
+    // A mesh of another job would seem to belong to these statistics.
     CHECK_FALSE(fs::exists(here.path() / "out/mesh.ply"));
     CHECK_FALSE(fs::exists(here.path() / "out/mesh.obj"));
     CHECK_FALSE(fs::exists(here.path() / "out/picture.png"));

@@ -9,18 +9,18 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The default job with these settings, in a folder of its own.
+/// Runs the default job with these settings, in a separate folder.
 struct Attempt {
     TestFolder here;
     ProgramEnd end;
 
     explicit Attempt(const std::vector<std::string>& settings) {
-        // A picture takes ten times as long as all the rest.
+        // A picture takes ten times as long as everything else.
         end = run_tessera(Arguments{"run"} + set({"output.folder=out", "output.picture=false"}) + set(settings),
                           here.path());
     }
 
-    /// Requires a run that went well.
+    /// Requires that the run succeeded.
     RunFolder well() const {
         INFO(end.text());
         REQUIRE(end.exit_code == 0);
@@ -50,7 +50,7 @@ TEST_CASE("a surface without detail stays the base mesh") {
     CHECK(finished(Attempt({"map.source=constant", "map.value=1"}).well()) == 18);
     CHECK(finished(Attempt({"tests.generation_limit=0"}).well()) == 18);
     CHECK(finished(Attempt({"tests.normal=false", "tests.summed_height=false"}).well()) == 18);
-    // without the Normal Test: the Summed Height Test looks at the map, whatever its height stands for
+    // without the Summed Height Test, which depends on the map alone, whatever the scale
     CHECK(finished(Attempt({"displacement.scale=0", "tests.summed_height=false"}).well()) == 18);
 }
 
@@ -70,7 +70,7 @@ TEST_CASE("a camera anywhere runs") {
     Attempt({"camera.eye=[0, 0, 0]", "camera.target=[0, 1, 0]"}).well();            // in the plane itself
     Attempt({"camera.eye=[0, -3.2, -2.4]"}).well();                                 // below
     Attempt({"camera.eye=[0, -3, 0.5]", "camera.target=[0, -6, 0.5]", "output.picture=true"})
-        .well();                                    // all of it behind
+        .well();                                    // all of the mesh is behind the eye
     Attempt({"camera.eye=[0, -150, 120]"}).well();  // a dot on the screen
     Attempt({"camera.near_plane=1e6"}).well();
     Attempt({"camera.field_of_view=0.1", "camera.eye=[1, -3, 2.5]", "tests.generation_limit=6",
@@ -98,7 +98,7 @@ TEST_CASE("culling takes from what is written and lit, and from nothing else") {
     CHECK(front.count("pass_or_tessellate", "culled") < finished(front));
     CHECK(finished(front) == finished(all));
 
-    // seen from below, all of it faces away: an empty mesh and an empty picture
+    // seen from below every triangle is a back face: an empty mesh and an empty picture
     const Attempt below(
         {"map.source=constant", "camera.eye=[0, -3.2, -2.4]", "hardware.culling=back", "output.picture=true"});
     const RunFolder none = below.well();
@@ -119,7 +119,7 @@ TEST_CASE("the queue's order and watermark, and the way to memory, change no tri
 TEST_CASE("thresholds of zero end at the map's resolution, the generation limit or the triangle limit") {
     const std::vector<std::string> zero{"tests.normal_threshold=0", "tests.summed_height_threshold=0",
                                         "tests.view_threshold=0",
-                                        // much lies at 0 itself
+                                        // many values are exactly 0
                                         "check.allowed_flips=100", "check.allowed_triangles=100"};
     const auto with = [&](std::vector<std::string> more) {
         more.insert(more.end(), zero.begin(), zero.end());
@@ -132,8 +132,8 @@ TEST_CASE("thresholds of zero end at the map's resolution, the generation limit 
     CHECK(limited.end.exit_code == 4);
     CHECK_THAT(limited.end.err, Contains("limits.triangles = 5000"));
     CHECK(limited.here.names().empty());
-    // Nothing but the triangle limit ends this one. With few bits of texture it finishes triangles early: else the queue
-    // grows by gigabytes before the first.
+    // Only the triangle limit ends this run. With few texture bits triangles finish early; otherwise the queue would
+    // grow by gigabytes before the first does.
     const Attempt endless = with({"limits.triangles=20000", "tests.generation=false", "tests.tex_coord=false",
                                   "tests.view=false", "tests.summed_height_unit=area", "displacement.scale=1",
                                   "map.width=64", "map.height=64", "formats.texture_fraction=2"});
@@ -144,7 +144,7 @@ TEST_CASE("thresholds of zero end at the map's resolution, the generation limit 
 
 TEST_CASE("the narrowest and widest formats run or say what does not fit") {
     const auto settles = [](std::vector<std::string> settings) {
-        // that many lie within so coarse a bound
+        // so coarse a bound allows that many flips
         settings.insert(settings.end(), {"check.allowed_flips=100", "check.allowed_triangles=100"});
         const Attempt attempt(settings);
         INFO(attempt.end.text());

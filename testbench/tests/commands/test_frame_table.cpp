@@ -9,7 +9,7 @@ using namespace tessera;
 
 namespace {
 
-/// Two frames, every figure another number.
+/// Two frames with distinct figures.
 std::vector<FrameRow> two_rows() {
     FrameRow first;
     first.name = "frame_000";
@@ -50,7 +50,7 @@ TEST_CASE("frames.txt: each figure below its heading") {
           "                  8,630\n");
 }
 
-// 54321 + 309 + 308 bytes sent, 100000 + 8630 of tessellated meshes.
+// 54321 + 309 + 308 bytes sent; the tessellated meshes have 100000 + 8630.
 TEST_CASE("frames.txt: what was sent, by kind, and beside the tessellated meshes") {
     std::vector<FrameRow> rows = two_rows();
     rows.push_back(rows[1]);

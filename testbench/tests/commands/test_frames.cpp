@@ -16,7 +16,7 @@ Arguments run_of(const Arguments& settings, const std::string& mode = "functiona
     return Arguments{"run", "--set", "mode=" + mode, "--set", "output.picture=false"} + set(settings);
 }
 
-/// One camera for all frames and the plain runs beside them.
+/// One camera for all frames and for the single runs they are compared with.
 const std::vector<std::string> small{"map.width=64",
                                      "map.height=64",
                                      "tests.view_threshold=12",
@@ -201,7 +201,7 @@ TEST_CASE("a signal to the process of all frames ends the frame's too, and a lin
     std::size_t interrupted = 0;
     for (const std::string& line : lines_of(end.err))
         interrupted += line.rfind("tessera: interrupted (SIGTERM) ", 0) == 0;
-    CHECK(interrupted == 2);  // this process and its frame's
+    CHECK(interrupted == 2);  // the program's and its child's, which runs the frame
     CHECK_FALSE(fs::exists(here.path() / "out/frames.csv"));
 }
 
@@ -210,7 +210,7 @@ TEST_CASE("frames that cannot be are refused before the first, and what was ther
     succeed(run_of(frames(2)), here.path());
     const std::string table = read_all(here.path() / "out/frames.csv");
     const auto frames_refused = [&](const Arguments& settings) { return refused(run_of(settings), here.path()); };
-    // Frame 0 could be; the displacement of the next leaves the mesh too few steps.
+    // Frame 0 would fit; the displacement of the next leaves too few steps for the mesh.
     CHECK_THAT(frames_refused(
                    frames(3, {"displacement.scale=1e6", "formats.position_bits=16", "formats.position_fraction=0"})),
                Contains("frame_001 (displacement.scale = 500000)"));

@@ -5,7 +5,7 @@
 #include "testbench/tests/support/program_runner.h"
 #include "testbench/tests/support/run_folder.h"
 
-// The Highlight Test through the program: what a run with it says and leaves behind, and that one without does not.
+// The Highlight Test through the program: what runs with it print and write, and that runs without it do not.
 
 using namespace tessera;
 using Catch::Contains;
@@ -34,7 +34,7 @@ TEST_CASE("highlight run: consistent, and every file names the test") {
     CHECK_THAT(files.at("mesh.ply"), Contains("32 is added where the Highlight Test was true"));
     const auto queue_entry = run.count("formats", "queue_entry");
 
-    // its pictures and its error can be had from the folder
+    // its pictures and its error can be made from the folder
     succeed({"render", "out", "--view", "test", "--size", "320"}, here.path());
     succeed({"compare", "out"}, here.path());
 
@@ -65,7 +65,7 @@ TEST_CASE("highlight run: functional and timed mode, with a queue that spills, l
     CHECK((mesh_of({"hardware.queue_capacity=4", "hardware.tests_units=3"}) == functional));
 }
 
-// A Highlight Test that never asks: its mesh is that of a design without, and so is its every cycle, but for
+// A Highlight Test that never asks for a split: the mesh and every cycle are those of a design without it, except for
 // the latency.
 TEST_CASE("highlight run: to the cycle a Normal Test as much longer") {
     const TestFolder here;

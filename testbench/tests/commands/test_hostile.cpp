@@ -20,7 +20,7 @@ std::vector<fs::path> files_in(const fs::path& folder) {
     return files;
 }
 
-/// One file through the program. Good: exit code 0. Bad: one message that names it, and no trace. Nothing else.
+/// Runs the program on one file. It must exit with code 0, or print one message that names the file and leave no files.
 void try_file(const fs::path& file, const std::string& table, const std::vector<std::string>& settings) {
     const TestFolder here;
     const Arguments arguments =
@@ -41,7 +41,7 @@ void try_file(const fs::path& file, const std::string& table, const std::vector<
         const auto remarks = RunFolder(here.path() / "out").conformance["remarks"];
         for (const auto& remark : remarks)
             CHECK_THAT(end.out, Contains("note: " + remark.get<std::string>() + "\n"));
-        // Nothing is wrong with this one; it lies 17,000 units from the origin.
+        // This file is valid; its mesh lies 17,000 units from the origin.
         const bool sound = name.rfind("ok_", 0) == 0 || name == "tinyobj_issue-295-trianguation-failure.obj";
         const bool borderline = !sound && name.rfind("ambig_", 0) != 0;
         if (borderline && file.parent_path().parent_path().filename() == "hostile")
@@ -52,7 +52,7 @@ void try_file(const fs::path& file, const std::string& table, const std::vector<
         CHECK(end.out.empty());
         CHECK(lines_of(end.err).size() == 1);
         CHECK(end.err.rfind("tessera: ", 0) == 0);
-        // A mesh that is fine by itself may lie where the default camera cannot see it.
+        // The default camera may be unable to see a mesh that is valid in itself.
         CHECK_THAT(end.err, Contains(name) || (Contains("camera.eye is ") && Contains("mesh")));
         CHECK(here.names().empty());
     }

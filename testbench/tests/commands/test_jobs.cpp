@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// 64 bit FNV-1a of what follows the header, which names more than the mesh.
+/// 64-bit FNV-1a of the data after the header, since the header depends on more than the mesh.
 std::uint64_t hash_of_mesh(const fs::path& ply) {
     const std::string file = read_all(ply), end = "end_header\n";
     const std::size_t header = file.find(end);
@@ -31,7 +31,7 @@ void check_result(const JobResult& expected, const fs::path& folder) {
     CHECK(hash_of_mesh(folder / "mesh.ply") == expected.mesh);
 }
 
-/// Runs one of the project's jobs and requires what every one of them must hold.
+/// Runs one of the project's jobs and requires what holds for all of them.
 void run_job_well(const std::string& name) {
     const fs::path job = source_folder() / "testbench/examples/jobs" / (name + ".toml");
     const TestFolder here;
@@ -102,8 +102,8 @@ TEST_CASE("the job teapot passes") {
 
 namespace {
 
-/// Runs a job with another height test alone, in the modern design: closed, golden's own mesh is the same, and more edges
-/// than `least` are split unless the run says that none is.
+/// Runs a job with another height test alone, in the modern design. The mesh must be closed, equal golden's, and have
+/// more than `least` split edges unless the run reports that the base mesh cannot split.
 ProgramEnd run_with_test(const TestFolder& here, const std::string& job, const std::string& test,
                          const Arguments& settings, std::uint64_t least = 100) {
     INFO(job << ", " << test);

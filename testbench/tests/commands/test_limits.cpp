@@ -1,5 +1,5 @@
-// Requests and files that ask for far more than there is: each ends in one clear message and the documented exit code,
-// soon, and in little memory.
+// Requests and files that ask for far more than is available: each ends quickly and in little memory, with one clear
+// message and the documented exit code.
 #include <sys/stat.h>
 
 #include <catch2/catch.hpp>
@@ -39,7 +39,7 @@ void check_ended(const ProgramEnd& end, ExitCode code) {
         CHECK(end.peak_mib < most_mebibytes);
 }
 
-/// One line that says all of this, and nothing left behind.
+/// One line that contains all these words.
 void check_refused(const ProgramEnd& end, ExitCode code, const std::vector<std::string>& words) {
     check_ended(end, code);
     INFO(end.text());
@@ -57,7 +57,7 @@ void refused(const std::vector<std::string>& settings, ExitCode code, const std:
     CHECK(here.names().empty());
 }
 
-/// An OBJ file of one face, its corners given by their numbers.
+/// An OBJ file of one face with the corners corner(0), corner(1), ...
 void write_polygon(const fs::path& file, std::size_t corners,
                    const std::function<std::pair<double, double>(std::size_t)>& corner) {
     std::string text, face = "f";
@@ -151,7 +151,7 @@ TEST_CASE("limits: memory that runs out, wherever it does, is told as that") {
             {"sh", "-c", "ulimit -v " + std::to_string(kibibytes) + "; exec \"$0\" " + command, tessera_program()},
             here.path());
     };
-    unsigned floor = 40000;  // what the program needs to begin depends on the machine's libraries
+    unsigned floor = 40000;  // what the program needs to start depends on the machine's libraries
     while (within(floor, "--version").exit_code != 0)
         REQUIRE((floor += 1000) < 1'000'000);
     unsigned short_of_memory = 0;

@@ -4,7 +4,7 @@
 #include "testbench/tests/support/program_runner.h"
 #include "testbench/tests/support/run_folder.h"
 
-// The ends of what a job may ask for, as a user meets them: a run that holds, or one message and nothing left behind.
+// The limits of a job's values, as a user meets them: a correct run, or one message and no files.
 
 using namespace tessera;
 using Catch::Contains;
@@ -18,7 +18,7 @@ Arguments run_of(const Arguments& settings) {
     return Arguments{"run", "--set", "output.folder=out"} + set(small) + set(settings);
 }
 
-/// The numbers of [timing] at one end of their ranges, but for those named.
+/// The numbers of [timing] at one end of their ranges, except those named.
 Arguments timing_at(bool highest, const Arguments& others) {
     Arguments settings;
     for (const Key& key : find_table("timing")->keys) {

@@ -18,7 +18,7 @@ Clock::time_point now() {
     return the_time;
 }
 
-/// A file to say it in, at a time that the test sets.
+/// The file to which progress is written, with a clock that the test sets.
 class Log {
   public:
     explicit Log(bool terminal) : file_(std::tmpfile()), terminal_(terminal) {
@@ -66,7 +66,7 @@ TEST_CASE("progress in a log: a line every ten seconds, none for less") {
     progress.show("running", 0.6);
     progress.report_if_due();
     CHECK(log.text() == first);
-    // With nobody calling show(), and late: a line for 47 s, none for 20, 30 and 40.
+    // Without a call of show(), and late: one line at 47 s, none for 20, 30 and 40.
     log.at(47.5);
     progress.report_if_due();
     const std::string second = first + "tessera: after 47 s at 60 %, frame_3: running\n";
@@ -92,7 +92,7 @@ TEST_CASE("progress in a log: nothing of work that is over, and work that begins
         progress.report_if_due();
         CHECK(log.text().empty());
         progress.show("rendering", 0.3);
-        CHECK(log.text().empty());  // 40 s have gone by without a word
+        CHECK(log.text().empty());  // nothing was printed at 40 s
         log.at(50);
     }
     Progress next("", log.display());

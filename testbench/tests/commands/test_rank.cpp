@@ -5,7 +5,7 @@
 
 #include "testbench/tests/commands/crater_lake.h"
 
-// Crater Lake through the machine with a Rank Test, as a user runs it, from 24 base triangles.
+// Runs Crater Lake with a Rank Test from 24 base triangles, as a user does.
 
 using namespace tessera;
 using Catch::Contains;
@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// With a Rank Test.
+/// A run with a Rank Test.
 CraterLakeRun ranked(const TestFolder& here, const Arguments& settings) {
     return {here, Arguments{"--set", "hardware.height_test=rank", "--set", "hardware.triangulation=greatest_rank"} +
                       settings};
@@ -95,8 +95,8 @@ TEST_CASE("rank: with fitted heights the same mesh is a seventh nearer to the ma
     CHECK(fitted.rms < 0.87 * given.rms);
 }
 
-/// The paper's tests have 3.37 pixels with 2,384 triangles, the least of a sweep over both thresholds and two base meshes
-/// (scripts/figures --only rank_test).
+/// With the paper's tests the least error with 2,384 triangles is 3.37 pixels, from a sweep over both thresholds and
+/// two base meshes (scripts/figures --only rank_test).
 TEST_CASE("rank: from the crater's rim 2,400 triangles show less than half the error of the paper's tests") {
     const TestFolder here;
     const CraterLakeRun found =

@@ -12,7 +12,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The commands of the text's fenced `sh` blocks: one per line, lines that end in a backslash joined.
+/// The commands in the text's fenced `sh` blocks: one per line, with lines that end in a backslash joined.
 std::vector<std::string> commands_in(const std::string& markdown) {
     std::vector<std::string> commands;
     bool within = false, continues = false;
@@ -38,7 +38,7 @@ std::vector<std::string> commands_in(const std::string& markdown) {
     return commands;
 }
 
-/// What a command is to be held to.
+/// How a command is tested.
 enum class Trial {
     run,      ///< run it, exit code 0
     parse,    ///< a script that takes long or needs more tools than tests do: it is there and its syntax is right

@@ -116,7 +116,7 @@ TEST_CASE("render: camera, zoom, lines and error scale change the picture") {
         CHECK(picture(arguments) != usual);
     }
     CHECK(picture({"--view", "error"}) != picture({"--view", "error", "--error-scale", "0.5"}));
-    // The run's own camera, said aloud.
+    // The run's own camera, given explicitly.
     CHECK(picture({"--view", "wireframe", "--eye", "1.06953", "-2.9385", "2.56815", "--target", "0", "0", "0.125",
                    "--up", "0", "0", "1", "--field-of-view", "36"}) == usual);
 }
@@ -145,7 +145,7 @@ TEST_CASE("render: a camera that sees nothing, and a run that emitted nothing, d
                         here.path()),
                Contains("no part of the mesh is in this camera's view"));
     CHECK(all_background(read_png(here.path() / "behind.png")));
-    // The plane from below, back faces culled.
+    // The plane from below, with back faces culled.
     make_run(here.path(), {"map.source=constant", "hardware.culling=back", "camera.eye=[0.1, 0.2, -4]"});
     for (const std::string view : {"overview", "wireframe", "stopped", "error"})
         CHECK_THAT(rendered({"run", "--size", "200x100", "--view", view}, here.path()),

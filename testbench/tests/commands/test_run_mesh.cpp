@@ -16,7 +16,7 @@ Arguments arguments_of(const Arguments& settings) {
     return Arguments{"run"} + set(settings) + set({"mode=functional", "output.picture=false"});
 }
 
-/// Runs to the end, checked in all that any run must satisfy; gives what it left.
+/// Runs to the end, with the checks that hold for every run; returns its folder.
 RunFolder run(const fs::path& folder, const std::string& name, std::vector<std::string> settings) {
     settings.push_back("output.folder=runs/" + name);
     succeed(arguments_of(settings), folder);
@@ -46,7 +46,7 @@ double step(const RunFolder& run) {
     return std::ldexp(1.0, -static_cast<int>(figure("position_fraction"))) / figure("model_scale");
 }
 
-/// The same triangles in the same order, corner by corner; what differs is half a step of rounding.
+/// The same triangles in the same order, corner by corner, except for rounding.
 void check_same_mesh(const RecordedMesh& a, const RecordedMesh& b, double position, double texture) {
     REQUIRE(a.triangles.size() == b.triangles.size());
     double apart = 0, texture_apart = 0, normal_apart = 0;
@@ -62,7 +62,7 @@ void check_same_mesh(const RecordedMesh& a, const RecordedMesh& b, double positi
         }
     CHECK(apart <= position);
     CHECK(texture_apart <= texture);
-    CHECK(normal_apart <= 2.0 / 16384);  // normalised once more in the bump unit
+    CHECK(normal_apart <= 2.0 / 16384);  // the bump unit normalises once more
 }
 
 }  // namespace
@@ -78,7 +78,7 @@ TEST_CASE("a second map on a run's mesh leaves no crack") {
         CHECK(second.count("run", "triangles_finished") > base + base / 10);
         check_closed(second);
     }
-    // and once more
+    // and on a third run
     const RunFolder third = run(here.path(), "third", on("text", {"displacement.scale=0.1"}));
     CHECK(third.count("host", "base_triangles") > base);
     check_closed(third);
@@ -112,7 +112,7 @@ TEST_CASE("a second map of nothing changes nothing but what the Normal Test sees
     CHECK(second.count("run", "edges_split") == 0);
     check_same_mesh(read_ply(here.path() / "runs/first/mesh.ply"), read_ply(here.path() / "runs/second/mesh.ply"),
                     step(second) / 2,
-                    0.5 / 4096 / 264 + 0x1p-25);  // of a step, and of mesh.ply's floats
+                    0.5 / 4096 / 264 + 0x1p-25);  // half a step, and the rounding of mesh.ply's floats
 }
 
 TEST_CASE("the seam of a cylinder stays closed under a second map of another size") {
@@ -165,7 +165,7 @@ TEST_CASE("compare and render read a run on a run, and the first run's own input
              {"compare", "runs/second"}, {"render", "runs/second", "--view", "error", "--size", "200"}})
         succeed(arguments, here.path());
     const auto error = nlohmann::json::parse(read_all(here.path() / "runs/second/error.json"));
-    // A base mesh made otherwise than the run's would be off by the first map's height.
+    // A base mesh that differs from the run's would be off by the first map's height.
     CHECK(error.at("interpolated").at("mesh_to_reference_max").at("value").get<double>() < 0.06);
     CHECK(fs::exists(here.path() / "runs/second/error.png"));
 
@@ -206,7 +206,7 @@ TEST_CASE("a run takes away neither the mesh file nor the map file that it reads
             here.path(), {"its own map", "picture.png"});
     }
     CHECK(read_all(here.path() / "runs/first/mesh.obj") == mesh);
-    // A file of another name may lie there.
+    // A file of another name in the folder is allowed.
     fs::copy(here.path() / "runs/first/mesh.obj", here.path() / "runs/first/base.obj");
     succeed(arguments_of({"mesh.source=file", "mesh.file=runs/first/base.obj", "tests.generation_limit=1",
                           "output.folder=runs/first"}),

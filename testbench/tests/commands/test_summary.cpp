@@ -8,7 +8,7 @@
 #include "testbench/output/report/conformance_report.h"
 #include "testbench/tests/support/hand_made_run.h"
 
-// What a run prints: each figure in its place, on a machine whose counts are all different, and a run of one triangle.
+// The printed summary: each figure in its place, with all counts different, and a run of one triangle.
 
 using namespace tessera;
 using namespace tessera::testing;
@@ -16,7 +16,7 @@ using Catch::Contains;
 
 namespace {
 
-/// What stands behind a row's name.
+/// The text after a row's name.
 std::string value_of(const std::string& text, const std::string& name) {
     const std::string begin = "  " + name + std::string(name.size() < 26 ? 26 - name.size() : 0, ' ');
     const std::size_t at = ("\n" + text).find("\n" + begin);
@@ -39,7 +39,7 @@ TEST_CASE("summary: counts of the machine, each in its place") {
           "view alone 3, tex coord alone 4, generation alone 1, several 1");
     CHECK(value_of(text, "distinct edges") == "11, each tested 3.0 times on average");
     CHECK(value_of(text, "distinct vertices") == "6; 33 computed, 16 of them discarded, and 15 normals transformed");
-    // the default design's entry, and a bit for the Highlight Test
+    // the default design's entry, and one bit for the Highlight Test
     CHECK(value_of(text, "triangle queue") == "at most 24 triangles waiting, 1573 bits each");
     CHECK_THAT(value_of(text, "summed height table"), Contains("0 reads, 0.0 per edge"));
     CHECK(value_of(text, "functional mode") == "simulated in 0.50 s, 0.00 million edges a second");
@@ -49,7 +49,7 @@ TEST_CASE("summary: counts of the machine, each in its place") {
 
     run.setup.registers.formats.tex_coord_fraction = 1;
     run.setup.registers.tests.highlight_test = false;
-    run.setup.base_triangles.resize(1);  // whose vertices would be three of those made
+    run.setup.base_triangles.resize(1);  // so that three of the computed vertices are base vertices
     const std::string other = summary(run.setup, run.simulation, {}, {}, 0.5);
     CHECK(value_of(other, "triangles") == "1 base -> 9 finished, 2 culled");
     CHECK(value_of(other, "  split by") == "normal alone 10, summed height alone 4, both 1");
@@ -117,7 +117,7 @@ TEST_CASE("summary: what was checked") {
     CHECK(value_of(text, "work conservation") == "FAILED: 40 triangles and 2 unit counts checked, 7 violations");
     CHECK(value_of(text, "reads") == "FAILED: 60 entries compared, 8 wrong");
 
-    // What passes says nothing of it; a row fails for each of its reasons.
+    // A part that passes prints no FAILED; a row fails for each of its reasons.
     checks.conformance->mismatches = 0;
     checks.work->violations = 0;
     checks.reads->wrong = 0;
@@ -206,7 +206,7 @@ TEST_CASE("summary: a timed run of one triangle") {
     CHECK(value_of(text, "spilled") == "no such row");
 }
 
-// Two base triangles, four children each, places for two: of the second's children at least one is spilled.
+// Two base triangles with four children each, and two places: at least one of the second's children is spilled.
 TEST_CASE("summary: a queue that spills") {
     Job job = full_split_job(1, 1);
     job.hardware.queue_capacity = 2;

@@ -18,7 +18,7 @@ bool sweeps_run() {
     return end.exit_code == 0;
 }
 
-/// Nine designs of a tiny job; in three of them a full queue may not spill, which is a deadlock.
+/// Nine designs of a tiny job. In three of them a full queue may not spill, and the run deadlocks.
 const std::string small = R"(job = "half_donut"
 figures = ["timing.cycles", "timing.bottleneck"]
 minimise = ["timing.cycles_per_triangle", "area"]
@@ -152,7 +152,7 @@ TEST_CASE("sweep: workers that share a study search some of the designs, each ru
     const fs::path folder = checkout.root() / "runs/sweeps";
     const std::vector<std::string> rows = lines_of(read_all(folder / "small_search/table.csv"));
     CHECK(rows.size() > 3);
-    CHECK(rows.size() <= 7);  // both workers may take the last
+    CHECK(rows.size() <= 7);  // both workers may start the last run
     CHECK(results_in(folder / "results") == rows.size() - 1);
     CHECK(fs::exists(checkout.root() / file));
 

@@ -5,7 +5,7 @@
 #include "testbench/tests/support/program_runner.h"
 #include "testbench/tests/support/run_folder.h"
 
-// Timed mode through the program: exit codes, reports, and two runs that leave the same bytes.
+// Timed mode through the program: exit codes, reports, and identical bytes from two runs.
 
 using namespace tessera;
 using Catch::Contains;

@@ -14,7 +14,7 @@ namespace {
 
 const Arguments small_map{"--set", "map.width=64", "--set", "map.height=64"};
 
-/// Runs the tuned job and compares it: error.json must have the tuner's figures to the last bit.
+/// Runs the tuned job and compares it: error.json must have the tuner's figures, bit for bit.
 void check_by_run_and_compare(const fs::path& folder, const std::string& name) {
     const Json tuned = read_json(folder / (name + ".json"));
     succeed({"run", name + ".toml", "--set", "mode=functional", "--set", "check.end_to_end=false", "--set",

@@ -36,7 +36,7 @@ TEST_CASE("a mistyped key is refused with file, line and what was meant") {
     refused({"run", "job.toml"}, here, {"job.toml:2:", "view_threshold", "a number"});
     write_all(here.path() / "job.toml", "[tests\n");
     refused({"run", "job.toml"}, here, {"job.toml:1:"});
-    // also where the job would only be printed
+    // also if the job would only be printed
     refused({"run", "job.toml", "--dump-config"}, here, {"job.toml:1:"});
 }
 

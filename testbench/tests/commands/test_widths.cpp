@@ -151,7 +151,7 @@ TEST_CASE("widths: Crater Lake's Summed Height Table and positions") {
     const std::string job = (source_folder() / "testbench/examples/jobs/crater_lake_24.toml").string();
     succeed({"widths", job, "--quantity", "summed_height,position", "--bits", "24..32", "--output", "w"}, here.path());
     const Json table = read_json(here.path() / "w/widths.json").at("quantities");
-    // a table that is wide enough changes nothing
+    // a table of sufficient width changes nothing
     const Json& heights = table.at("summed_height").at("rows");
     const Json& widest = heights.at(0);
     std::size_t refused = 0;

@@ -28,7 +28,7 @@ bool is_unfinished(const std::string& name) {
     return name.find("/.tessera-") != std::string::npos;
 }
 
-/// A run small enough to be made some hundred times, with every file there is but the picture, which takes long.
+/// A run small enough to repeat some hundred times, with every file except the picture, which takes long.
 Arguments run_arguments(const std::string& seed) {
     return Arguments{"run", "--vcd", "--timeline"} +
            set({"map.width=16", "map.height=16", "map.source=noise", "tests.generation_limit=3", "output.picture=false",
@@ -42,7 +42,7 @@ ProgramEnd run_failing(const std::vector<std::string>& arguments, const fs::path
         {{"LD_PRELOAD", TESSERA_FAILING_DISK}, {"TESSERA_FAILING_DISK", std::to_string(at) + ":" + what}});
 }
 
-/// How many of its calls concern the disk.
+/// The number of calls that access the disk.
 long disk_calls(const std::vector<std::string>& arguments, const fs::path& folder) {
     const TestFolder log;
     const ProgramEnd end =
@@ -55,7 +55,7 @@ long disk_calls(const std::vector<std::string>& arguments, const fs::path& folde
     return calls;
 }
 
-/// What a command may leave behind, whatever happens to it: all that was there, or all that it makes.
+/// What a command may leave, even if it fails: all earlier files, or all files that it writes.
 struct Expected {
     Files before, after;
 };
@@ -79,7 +79,7 @@ void check_ends_well(const std::vector<std::string>& arguments, const fs::path& 
             names.push_back(name);
         CAPTURE(names);
         CHECK((left == expected.before || left == expected.after));
-        if (end.exit_code == 0) {  // what cannot be synchronised is kept all the same
+        if (end.exit_code == 0) {  // a failed synchronisation does not discard the files
             CHECK(left == expected.after);
             continue;
         }
@@ -162,7 +162,7 @@ TEST_CASE("a folder that is not for a run is refused") {
     write_all(here.path() / "work/deep/runs/frame_001/mesh.ply", "mine");
     CHECK_THAT(folder_refused("runs", {"--set", "frames.count=2"}), Contains("runs/frame_001/mesh.ply"));
 
-    // The default job, every key with its value: what --dump-config gave is no run's.
+    // The default job, with every key: the output of --dump-config does not belong to a run.
     const ProgramEnd dumped = run_tessera({"run", "--dump-config"}, here.path());
     write_all(here.path() / "work/deep/mine/job.toml", dumped.out);
     CHECK_THAT(folder_refused("mine", {"mine/job.toml"}), Contains("mine/job.toml"));
@@ -249,7 +249,7 @@ TEST_CASE("an input whose name lies in the output folder stays, wherever it lead
 TEST_CASE("a built checkout that cannot be written runs") {
     const TestFolder here;
     const Checkout checkout;
-    // What ninja says of a build folder in which nothing is to be done.
+    // What ninja prints about an up-to-date build folder.
     write_all(checkout.root() / "tools/cmake",
               "#!/bin/sh\necho \"ninja: $(cat " + (here.path() / "state").string() + ")\"\n");
     write_all(checkout.root() / "build/release/build.ninja", "");
@@ -286,14 +286,14 @@ TEST_CASE("what cannot be taken away or replaced leaves the earlier run as it wa
     const fs::path run = here.path() / "out/run";
     Files old_run = files_after(run_arguments("2"), here.path());
 
-    // What is no file of a run's is none of its business.
+    // A run does not touch files that no run writes.
     fs::create_directories(run / "wireframe.png/mine");
     write_all(run / "wireframe.png/mine/notes.txt", "mine");
     INFO(run_tessera(run_arguments("1"), here.path()).text());
     CHECK(read_all(run / "wireframe.png/mine/notes.txt") == "mine");
     CHECK(files_in(run).at("mesh.ply") != old_run.at("run/mesh.ply"));
 
-    // A folder that never held a run keeps what it has.
+    // In a folder that never held a run all files stay.
     fs::remove_all(here.path() / "out");
     for (const char* const name : {"error.txt", "shaded.png", "mesh.ply", "job.toml"}) {
         fs::create_directories(run);
@@ -308,9 +308,9 @@ TEST_CASE("what cannot be taken away or replaced leaves the earlier run as it wa
         fs::remove_all(run);
     }
 
-    // A link that leads into a folder nobody may write to: the last file of all that cannot be replaced.
+    // A frame's folder without write permission: the last of all files cannot be replaced.
     if (::geteuid() == 0)
-        return;  // whom permissions do not stop
+        return;  // permissions do not stop root
     old_run = files_after(run_arguments("2"), here.path());
     fs::create_directories(run / "frame_000");
     fs::copy_file(run / "job.toml", run / "frame_000/job.toml");

@@ -6,7 +6,7 @@
 using namespace tessera;
 
 TEST_CASE("distinct table: items get their numbers in the order they come, whatever their hashes") {
-    const std::uint64_t hashes = GENERATE(1u, 7u, 1'000'000u);  // as many different ones
+    const std::uint64_t hashes = GENERATE(1u, 7u, 1'000'000u);  // number of different hashes
     const auto hash = [&](std::uint64_t item) { return mix_hash(0, item % hashes); };
     DistinctTable table;
     std::vector<std::uint64_t> items;
@@ -18,7 +18,7 @@ TEST_CASE("distinct table: items get their numbers in the order they come, whate
             items.push_back(item);
         return number;
     };
-    // More than the slots it begins with, each met again after the table has grown.
+    // More items than the initial slots, each looked up again after the table has grown.
     for (std::uint32_t k = 0; k < 1500; ++k) {
         REQUIRE(number_of(3 * k) == k);
         REQUIRE(number_of(3 * (k / 2)) == k / 2);

@@ -98,7 +98,7 @@ TEST_CASE("items in the background are taken in order, up to the one that fails"
         CHECK_THROWS_WITH(run(true), "300");
         CHECK(last == 299);
         if (threads > 1)
-            CHECK_NOTHROW(run(false));  // given up
+            CHECK_NOTHROW(run(false));  // abandoned without finish()
     }
 }
 

@@ -9,10 +9,10 @@
 
 #include "golden/golden_model.h"
 
-/// Maps of every shape, and random numbers to fill them, for the golden model's tests.
+/// Maps of all shapes, and random numbers to fill them, for the golden model's tests.
 namespace tessera::golden::testing {
 
-/// Seeded, and the same numbers with every standard library.
+/// A seeded generator that gives the same numbers with every standard library.
 class Random {
   public:
     double real(double low, double high) { return low + (high - low) * static_cast<double>(bits_()) * 0x1p-64; }
@@ -23,7 +23,7 @@ class Random {
     double grid(double low, double high) { return std::floor(real(low, high) * 4096) / 4096; }
     glm::dvec3 unit() {
         for (;;) {
-            const glm::dvec3 v{real(-1, 1), real(-1, 1), real(-1, 1)};  // braces: in this order
+            const glm::dvec3 v{real(-1, 1), real(-1, 1), real(-1, 1)};  // braces fix the order
             if (glm::length(v) > 0.1 && glm::length(v) < 1)
                 return v / glm::length(v);
         }

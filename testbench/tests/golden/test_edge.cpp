@@ -1,4 +1,4 @@
-// The decision whether an edge is split.
+// The decision whether to split an edge.
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -75,7 +75,7 @@ TEST_CASE("edge: each test on operands worked out by hand") {
 
     SECTION("summed height, strictly greater, and the area option") {
         p.enabled.normal = false;
-        const Vertex i = vertex(4.5, 4.5), j = vertex(12.5, 4.5);  // rectangles of 4 x 1; only r_ij sees the peak
+        const Vertex i = vertex(4.5, 4.5), j = vertex(12.5, 4.5);  // rectangles of 4 x 1; only r_ij contains the peak
         p.summed_height_threshold = 49;                            // |100/2 - 0| > 49
         EdgeEvaluation e = evaluate_edge(i, j, map, p);
         CHECK(e.rectangle_width == 4);
@@ -93,7 +93,7 @@ TEST_CASE("edge: each test on operands worked out by hand") {
         CHECK(e.summed_height_test);
         p.enabled.summed_height = false;
         CHECK_FALSE(evaluate_edge(i, j, map, p).split);
-        // The peak under an end: once instead of twice, and with the other sign.
+        // The peak under an end counts once instead of twice, with the opposite sign.
         CHECK(evaluate_edge(vertex(8.5, 4.5), vertex(14.5, 4.5), map, p).summed_height == 100);
     }
     SECTION("normal: largest of six, against either end") {
@@ -161,7 +161,7 @@ TEST_CASE("edge: each test on operands worked out by hand") {
         no.normal_threshold = no.summed_height_threshold = 1e9;
         CHECK_FALSE(evaluate_edge(i, j, map, no).split);
         no = p;
-        no.normal_threshold = -1;  // always true, so that only TCT is left to say no
+        no.normal_threshold = -1;  // always true, so that only TCT can prevent the split
         CHECK_FALSE(evaluate_edge(vertex(4.1, 4.1), vertex(4.2, 4.9), map, no).split);
     }
 }
@@ -308,7 +308,7 @@ TEST_CASE("edge: as the viewer sees it, thresholds worked out by hand") {
                              parameters)
             .summed_height_test;
     };
-    // Both ends are 8 away: three octaves, of 2 x 1024 for a rank, 2048 for a bound.
+    // Both ends are at distance 8: three octaves, of 2 x 1024 for a rank, 2048 for a bound.
     parameters.rank_threshold = 1000;
     parameters.bound_threshold = 60000;
     CHECK_FALSE(asks(1000 + 3 * 2048, 0, 0));
@@ -316,13 +316,13 @@ TEST_CASE("edge: as the viewer sees it, thresholds worked out by hand") {
     parameters.rank_view = RankView::per_pixel;
     CHECK_FALSE(asks(1000 + 3 * 4096, 0, 0));
     CHECK(asks(1001 + 3 * 4096, 0, 0));
-    // A radius of 8 x 4 half steps: 4 of the 8.
+    // A radius of 8 x 4 half steps: 4 of the distance 8.
     parameters.bound_threshold = 500;
     CHECK_FALSE(asks(0, 500 + 2 * 2048, 16));
     CHECK(asks(0, 501 + 2 * 2048, 16));
-    CHECK(asks(0, 1, 24));  // of 8: the eye lies in the sphere
+    CHECK(asks(0, 1, 24));  // radius 8: the eye lies in the sphere
     CHECK_FALSE(asks(0, 0, 24));
-    parameters.row_w = {0, 0, 0, -8};  // the camera looks the other way
+    parameters.row_w = {0, 0, 0, -8};  // the camera looks away
     CHECK(asks(0, 1, 24));
     parameters.row_w = {0, 0, 0, -8.5};
     CHECK_FALSE(asks(0, 1, 24));

@@ -1,4 +1,4 @@
-// The Highlight Test of the golden model, on operands worked out by hand.
+// The golden model's Highlight Test, on operands derived by hand.
 #include <catch2/catch.hpp>
 #include <vector>
 
@@ -75,7 +75,7 @@ TEST_CASE("highlight: strictly above the cosine and the threshold") {
     CHECK(asks(0.999, 0.59));
     CHECK_FALSE(asks(1, 0.59));
     CHECK_FALSE(asks(0.999, 0.61));
-    CHECK_FALSE(row.edge(10.5, 14.5).highlight_test);  // alike
+    CHECK_FALSE(row.edge(10.5, 14.5).highlight_test);  // equal normals
 }
 
 TEST_CASE("highlight: switched off it is false, and only allowed splits happen") {

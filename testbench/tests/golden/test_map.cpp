@@ -1,4 +1,4 @@
-// The height map, its summed-area table and its normals, and the vertices it displaces.
+// The height map, its summed-area table and its normals, and displaced vertices.
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
@@ -125,7 +125,7 @@ TEST_CASE("map: rectangles of the Summed Height Test") {
     const Rectangle size{0, 0, 4, 3};
     CHECK(same(clamped.rectangle_about({10.7, 8.2}, size), 8, 7, 4, 3));
     CHECK(same(repeated.rectangle_about({10.7, 8.2}, size), 8, 7, 4, 3));
-    CHECK(same(clamped.rectangle_about({0.5, 0.5}, size), 0, 0, 4, 3));  // shifted inside, not cut
+    CHECK(same(clamped.rectangle_about({0.5, 0.5}, size), 0, 0, 4, 3));  // shifted inside, not clipped
     CHECK(same(clamped.rectangle_about({32, 16}, size), 28, 13, 4, 3));
     CHECK(same(repeated.rectangle_about({0.5, 0.5}, size), 30, 15, 4, 3));  // read periodically
     CHECK(same(repeated.rectangle_about({32, 16}, size), 30, 15, 4, 3));    // the seam's other copy
@@ -134,7 +134,7 @@ TEST_CASE("map: rectangles of the Summed Height Test") {
 
 TEST_CASE("map: the Curvature Table's nearest cell, of two the higher, at each level") {
     Map map(21, 13, AddressMode::clamp, AddressMode::repeat, std::vector<double>(std::size_t{21} * 13, 0));
-    // Levels 2 to 5, cells every 2, 4, 8, 16 texels to the one nearest to texels 20 and 12; each holds its number.
+    // Levels 2 to 5, with cells every 2, 4, 8, 16 texels up to the nearest to texels 20 and 12; each holds its number.
     const std::vector<std::array<int, 2>> cells = {{11, 7}, {6, 4}, {4, 3}, {2, 2}};
     CurvatureTable table{21, 13, {}};
     for (const auto& [columns, rows] : cells)
@@ -195,7 +195,7 @@ TEST_CASE("normal map: central differences, borders, thin axes") {
             ramp.push_back(10 * x + 30 * y);
     Map clamped(5, 4, AddressMode::clamp, AddressMode::clamp, ramp);
     clamped.derive_normals(scale, {su, sv});
-    for (std::size_t texel = 0; texel < 20; ++texel)  // a ramp's one-sided border slope is its slope
+    for (std::size_t texel = 0; texel < 20; ++texel)  // a ramp's one-sided slope at the border is its slope
         CHECK(glm::distance(clamped.normal(texel), expected(10 * scale / su, 30 * scale / sv)) < 1e-15);
     Map repeated(5, 4, AddressMode::repeat, AddressMode::repeat, ramp);
     repeated.derive_normals(scale, {su, sv});
@@ -266,7 +266,7 @@ TEST_CASE("vertex: displaced, inserted and transformed as ALGORITHM.md section 3
     CHECK(m.bump_length == Approx(1));
     CHECK(complete_base_vertex(b, map, p).generation == 0);
 
-    b.normal = -a.normal;  // no direction left
+    b.normal = -a.normal;  // the mean has no direction
     CHECK(insert_vertex(a, b, map, p).vertex.displaced_normal == glm::dvec3(0));
     b.position.z = -1;  // w = 1, on the near plane
     b.texture = {0, 0};

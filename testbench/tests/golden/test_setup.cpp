@@ -1,4 +1,4 @@
-// From a job to the golden model's parameters, by hand-derived values.
+// The golden model's parameters from a job, against values derived by hand.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -12,7 +12,7 @@ bool near(const glm::dvec3& a, const glm::dvec3& b) {
     return glm::length(a - b) < 1e-12;
 }
 
-// Looks from (0, 0, 5) down at the origin; 90 degrees, so half the viewport's height is the depth.
+// Looks down at the origin from (0, 0, 5), at 90 degrees, so that half the viewport's height is the depth.
 Camera straight_down() {
     Camera camera;
     camera.eye = {0, 0, 5};
@@ -57,7 +57,7 @@ TEST_CASE("camera: looks along x with z up, from anywhere") {
     Camera camera = straight_down();
     camera.eye = {-2, 7, 1};
     camera.target = {8, 7, 1};
-    camera.up = {0.3, 0, 1};  // not upright to the view axis
+    camera.up = {0.3, 0, 1};  // not perpendicular to the view axis
     const View view = make_view(camera, {});
     CHECK(near(view.backward, {-1, 0, 0}));
     CHECK(near(view.right, {0, -1, 0}));
@@ -112,7 +112,7 @@ TEST_CASE("parameters: displacement in world units, thresholds in codes and cosi
 
 TEST_CASE("parameters: the Rank Test's thresholds in pixels, at distance 1") {
     Scene scene;
-    scene.camera = straight_down();  // 50 pixels are 1 high at distance 1; a corner's tangent is the root of 5
+    scene.camera = straight_down();  // 50 pixels are 1 high at distance 1; the tangent to a corner is the root of 5
     scene.placement.scale = 8;
     scene.lowest = 0;
     scene.highest = 2;

@@ -1,4 +1,4 @@
-// Triangles cut along their split edges, once and until none is left to split.
+// Triangles cut along their split edges, once and until no edge splits.
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
@@ -40,7 +40,7 @@ double to_grid(double texels) {
     return std::round(texels * 4096) / 4096;
 }
 
-// On the plane that half_donut() displaces.
+// A vertex of the plane that half_donut() displaces.
 Vertex plane_vertex(double u, double v) {
     Vertex vertex;
     vertex.position = {2 * u / donut_size - 1, 2 * v / donut_size - 1, 0};
@@ -69,7 +69,7 @@ double texture_area(const std::array<Vertex, 3>& t) {
     return (a.x * b.y - a.y * b.x) / 2;
 }
 
-// Directed edges of a mesh under a key per vertex; `add` is false if one is there already.
+// Directed edges of a mesh, by a key for each vertex; `add` returns false if the edge exists already.
 template <class Key>
 class DirectedEdges {
   public:
@@ -140,7 +140,7 @@ TEST_CASE("subdivision: two edges split, the three choices of diagonal") {
         place(4, 4.5);
         CHECK(subdivide(split, v, Diagonal::shorter).children == cut_first[unsplit]);
         CHECK(subdivide(split, v, Diagonal::second).children == cut_second[unsplit]);
-        place(4, 3.5);  // Euclid would take the first, of length 2.45
+        place(4, 3.5);  // by Euclidean length the first would be shorter, at 2.45
         CHECK(subdivide(split, v, Diagonal::shorter).children == cut_second[unsplit]);
         CHECK(subdivide(split, v, Diagonal::first).children == cut_first[unsplit]);
         place(4, 4);
@@ -194,7 +194,7 @@ TEST_CASE("half donut on the plane of 18: ends, no T-vertex, area kept") {
 }
 
 TEST_CASE("the printed algorithm's endless case, and the generation test that ends it") {
-    // ALGORITHM.md 4.5: the long edge never splits; the third vertex runs to and fro between the thirds of it.
+    // ALGORITHM.md 4.5: the long edge never splits; the third vertex alternates between points one third along it.
     const Map map = half_donut(0.6, 0.25);
     Parameters p;
     p.scale = 0.25 / 65535;
@@ -216,7 +216,7 @@ TEST_CASE("the printed algorithm's endless case, and the generation test that en
         CHECK(ended.largest_generation == 12);
         CHECK(ended.triangles_emitted == with_generation_test[static_cast<std::size_t>(diagonal)]);
 
-        // A triangle of three texels' area: a hundred thousand triangles, and still going.
+        // A triangle of three texels' area: the run reaches a hundred thousand triangles and would continue.
         p.enabled.generation = false;
         const Tessellation endless = run(100'000);
         CHECK(endless.bound_hit);

@@ -14,7 +14,7 @@
 #include "testbench/tests/support/refusals.h"
 #include "testbench/tests/support/test_folder.h"
 
-/// Job files, values for their keys, and the messages they end in, for the job's tests.
+/// Job files, values for their keys, and the expected messages, for the job's tests.
 namespace tessera::testing {
 
 inline std::string parse_error_of(const std::string& text) {
@@ -28,7 +28,7 @@ inline std::vector<Key> all_keys() {
     return keys;
 }
 
-/// A job file of one key.
+/// A job file with one key.
 inline std::string one_key(const Key& key, const std::string& value) {
     const std::size_t dot = key.name.find('.');
     const std::string table = dot == std::string::npos ? "" : "[" + key.name.substr(0, dot) + "]\n";

@@ -1,4 +1,4 @@
-// Text made to break the reader: it ends in a job or a message, never otherwise.
+// Text designed to break the reader: the result is always a job or a message.
 #include <rapidcheck/catch.h>
 #include <catch2/catch.hpp>
 
@@ -21,7 +21,7 @@ using Catch::StartsWith;
 
 namespace {
 
-/// Parses; anything thrown but InputError fails the test.
+/// Parses the text; any exception but InputError fails the test.
 void survives(const std::string& text) {
     try {
         const Job job = parse_job(text, "hostile.toml");
@@ -36,7 +36,7 @@ void survives(const std::string& text) {
     }
 }
 
-/// A dump without its comments: the fewer bytes, the more of them matter.
+/// A dump without its comments, so that more of its bytes matter.
 std::string bare_dump(const Job& job) {
     std::string bare;
     std::string dump = dump_job(job);
@@ -65,7 +65,7 @@ TEST_CASE("deep nesting of every kind ends in a message") {
     CHECK_THAT(parse_error_of("[[a" + repeated(".a", 500000) + "]]"), Contains("dots in one line"));
     CHECK_THAT(parse_error_of(repeated("[[a]]\n", 100000)), Contains("unknown"));
     CHECK_THAT(parse_error_of(repeated("# ", 1000) + repeated(".", 1000)), Equals(""));
-    // The deepest that passes the line limit: 64 dots at each of toml++'s levels of brackets.
+    // The deepest nesting within the line limit: 64 dots at each of toml++'s bracket levels.
     const std::string level = "a" + repeated(".a", 64) + " = [\n";
     for (const std::size_t levels : {1u, 7u, 8u, 15u, 16u, 17u, 64u}) {
         std::string text = level;

@@ -1,4 +1,4 @@
-// Every key: what it reads, and that what is dumped reads the same again, from wherever it stands.
+// Every key: how it is read, and that a dumped job reads the same again, in any folder.
 #include <rapidcheck/catch.h>
 #include <catch2/catch.hpp>
 
@@ -46,7 +46,7 @@ std::string set_error_of(const std::string& setting) {
     });
 }
 
-/// A value the key may have and that is not its default.
+/// An allowed value of the key that is not its default.
 JobValue another_value(const Key& key) {
     const JobValue given = default_of(key);
     switch (key.kind) {
@@ -94,7 +94,7 @@ TEST_CASE("every key is described, has a unit and a default it accepts") {
         names.push_back(key.name);
         CHECK(key.description.size() > 5);
         CHECK(key.description.find('\n') == std::string::npos);
-        CHECK(key.description.find('|') == std::string::npos);  // it stands in a Markdown table
+        CHECK(key.description.find('|') == std::string::npos);  // the description is part of a Markdown table
         CHECK_FALSE(key.unit.empty());
         CHECK_FALSE(range_text(key).empty());
         CHECK_FALSE(wanted_text(key).empty());

@@ -1,4 +1,4 @@
-// A user's mistakes: what is refused, and that the message says where and why.
+// User errors: what is refused, and that the message says where and why.
 #include <rapidcheck/catch.h>
 #include <catch2/catch.hpp>
 
@@ -39,7 +39,7 @@ void expect_whole(const std::string& input, const std::string& message) {
     CHECK(parse_error_of(input) == message);
 }
 
-/// Settings one after another, separated by "; ": what validate() says of them together.
+/// Applies settings separated by "; " in order, and returns validate()'s message about them.
 std::string settings_error_of(const std::string& settings) {
     Job job;
     for (std::size_t from = 0; from < settings.size();) {
@@ -261,7 +261,7 @@ TEST_CASE("keys that contradict each other") {
         },
         settings_error_of);
 
-    Job out_of_range;  // made in code, past the checks of reading
+    Job out_of_range;  // set in code, without the checks of the reader
     out_of_range.tests.normal_threshold = -1;
     out_of_range.camera.viewport_width = 0;
     CHECK_THAT(validate_error_of(out_of_range), Contains("`camera.viewport_width` = 0 is out of range") &&

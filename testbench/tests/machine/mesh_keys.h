@@ -8,7 +8,7 @@
 
 namespace tessera::testing {
 
-/// Everything of a triangle that must not depend on how the machine got there.
+/// All values of a triangle that must not depend on the machine's timing.
 using Key = std::array<std::int64_t, 37>;
 
 inline std::multiset<Key> keys(const EmittedMesh& mesh) {

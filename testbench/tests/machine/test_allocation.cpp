@@ -5,7 +5,7 @@
 #include "testbench/tests/support/count_allocations.h"
 #include "testbench/tests/support/timed_checks.h"
 
-// No allocation per edge once running: a second frame of the same job finds every buffer as large as it needs.
+// No allocations per edge in steady state: in a second frame of the same job every buffer is large enough.
 
 using namespace tessera;
 using tessera::testing::setup_of;
@@ -23,7 +23,7 @@ void expect_no_allocation(const MachineSetup& setup, Simulation& simulation) {
     const std::uint64_t used = allocations_so_far() - before;
     CAPTURE(used, setup.base_triangles.size());
     CHECK(simulation.pipeline.edges_tested() == 2 * edges);
-    // the kernel's own, for a wait of a thread now and then: far fewer than one a thousand edges
+    // the kernel allocates occasionally when a thread waits: far less than once per thousand edges
     CHECK(used < edges / 1000);
 }
 

@@ -8,21 +8,21 @@
 #include "testbench/tests/support/checked_run.h"
 #include "testbench/tests/support/job_settings.h"
 
-// The whole machine, from the host's triangles to the rasteriser. SystemC elaborates once a process, so each case runs
-// one simulation.
+// The whole machine, from the host's triangles to the rasteriser. SystemC elaborates once per process, so each case
+// runs one simulation.
 
 using namespace tessera;
 using namespace tessera::testing;
 
 namespace {
 
-/// In functional mode; test_timed_mode.cpp has the other.
+/// In functional mode; test_timed_mode.cpp tests the other.
 MachineSetup functional_setup(const std::string& settings = "") {
     return setup_of(with_settings({}, "mode=functional " + settings));
 }
 
-/// No value saturated and no base edge stays open, as it must not where the formats are the paper's or no narrower than
-/// the mesh needs.
+/// Requires that no value saturates and no base edge stays open, as holds with the paper's formats or any that are wide
+/// enough for the mesh.
 void expect_sound(const CheckedRun& run) {
     CHECK(run.conformance.passed(0.5));
     CHECK(run.pipeline.saturations().total() == 0);
@@ -111,7 +111,7 @@ TEST_CASE("half donut, culling: Lighting gets fewer, the mesh stays whole") {
 
 namespace {
 
-/// Every third item of a stream waits on its way: the host's triangles and the queue's may overtake one another there.
+/// Delays every third item of a stream, so that the host's triangles and the queue's may overtake one another.
 template <class Item>
 struct Detour : sc_core::sc_module, tlm::tlm_fw_transport_if<Stream<Item>>, tlm::tlm_bw_transport_if<Stream<Item>> {
     tlm::tlm_target_socket<32, Stream<Item>> in{"in"};
@@ -140,7 +140,7 @@ struct Detour : sc_core::sc_module, tlm::tlm_fw_transport_if<Stream<Item>>, tlm:
     void invalidate_direct_mem_ptr(sc_dt::uint64, sc_dt::uint64) override {}
 };
 
-/// Puts a detour on each stream of parts.
+/// Inserts a detour into each stream of parts.
 struct Detours : UnitFactory {
     std::vector<std::unique_ptr<sc_core::sc_module>> detours;
     unsigned overtaken = 0;
@@ -179,7 +179,7 @@ const CaseTable overtaking(
      {"a bilinear filter, families", "hardware.displacement_filter=bilinear hardware.design=modern"}},
     [](const OvertakingRow& row) {
         Detours detours;
-        // many at a time, so that the host sends while the queue does
+        // many at a time, so that host and queue send concurrently
         const CheckedRun run(functional_setup("hardware.queue_watermark=1000 " + row.settings), &detours);
         expect_sound(run);
         CHECK(detours.overtaken > 0);
@@ -207,7 +207,7 @@ TEST_CASE("a machine that is stopped with triangles in its queue is not idle") {
 TEST_CASE("a read outside a table is an error that names the reader") {
     MachineSetup setup = functional_setup("hardware.direct_memory=false");
     Simulation simulation(setup, 1'000'000);
-    setup.registers.map.height *= 2;  // the units now take the map to be larger than its memory
+    setup.registers.map.height *= 2;  // the units now assume a map larger than its memory
     try {
         simulation.run();
         FAIL("no error");
@@ -223,9 +223,9 @@ TEST_CASE("a base triangle's View Test waits for its corners' screen positions")
     setup.base_triangles.resize(1);
     Simulation simulation(setup, 1'000'000);
     REQUIRE(simulation.run().empty());
-    // The host's time, one base triangle's first pass: Get Triangle 1, Calculate New P 1, Displace Vertex 6 and a
-    // read of the map (a triangle's parts go side by side), Transform, the View Test 1, Pass or Tessellate 1,
-    // Tessellation 1, Triangle Queue 1. The second pass, for the normals, is shorter and starts with the first.
+    // The host's time is the first pass of one base triangle: Get Triangle 1, Calculate New P 1, Displace Vertex 6 and
+    // a read of the map (a triangle's parts run in parallel), Transform, the View Test 1, Pass or Tessellate 1,
+    // Tessellation 1, Triangle Queue 1. The second pass, for the normals, is shorter and starts at the same time.
     const std::uint64_t expected = 1 + 1 + 6 + 1 + 500 + 1 + 1 + 1 + 1;
     CHECK(sc_core::sc_time_stamp().value() == expected * setup.design.timing.cycle_picoseconds);
 }
@@ -238,8 +238,8 @@ TEST_CASE("time joins at the later branch, also for what follows the join") {
     Simulation simulation(setup, 1'000'000);
     REQUIRE(simulation.run().empty());
     REQUIRE(simulation.monitor.mesh.triangles.size() == 4);
-    // Four children, one after another; for them the tests do not wait for Transform: Get Triangle 1, Calculate New P
-    // 1, Displace Vertex 6 and a read of the map, Transform, Pass or Tessellate 1, Lighting 4.
+    // Four children in sequence; for them the tests do not wait for Transform: Get Triangle 1, Calculate New P 1,
+    // Displace Vertex 6 and a read of the map, Transform, Pass or Tessellate 1, Lighting 4.
     const std::uint64_t expected = 4 * (1 + 1 + 6 + 1 + 500 + 1 + 4);
     CHECK(sc_core::sc_time_stamp().value() == expected * setup.design.timing.cycle_picoseconds);
 }
@@ -252,5 +252,5 @@ TEST_CASE("a second frame gives the same triangles again") {
     simulation.monitor.mesh.triangles.clear();
     simulation.host.send_again();
     REQUIRE(simulation.run().empty());
-    CHECK((keys(simulation.monitor.mesh) == first));  // not to be printed
+    CHECK((keys(simulation.monitor.mesh) == first));  // extra parentheses: nothing is printed
 }

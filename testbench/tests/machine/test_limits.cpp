@@ -5,15 +5,15 @@
 #include "testbench/tests/support/checked_run.h"
 #include "testbench/tests/support/job_settings.h"
 
-// Designs at the ends of what a job may ask for: each emits the bare datapath's mesh, decided as the golden model
-// decides, closed, with every item accounted for.
+// Designs at the limits of a job's keys: each emits the bare datapath's mesh, closed, with the golden model's decisions
+// and no item lost.
 
 using namespace tessera;
 using namespace tessera::testing;
 
 namespace {
 
-/// A few hundred triangles, of every size.
+/// A few hundred triangles of all sizes.
 const std::string small = "map.width=32 map.height=32 tests.summed_height_threshold=0.3 tests.generation_limit=5 ";
 
 std::string stalls(int seed, int per_mille, int longest) {
@@ -58,7 +58,7 @@ const CaseTable designs(
          queue("lifo", 2) + stalls(104, 500, 9) + every_unit("buffer", 1) +
              "hardware.tests_units=3 hardware.transform_pipelines=16 timing.results_buffer=1 "
              "timing.off_chip_buffer=1"},
-        // one edge after another, none waits for another's reads: at least its own
+        // edges do not wait for one another's reads: at least one edge's own
         {"the Summed Height Table 1000 cycles away, the others at hand",
          all_memories(0) + "timing.summed_height_table_latency=1000", 1000},
         {"the displacement map 1000 cycles away, the others at hand",
@@ -69,7 +69,7 @@ const CaseTable designs(
          queue("fifo", 1) + "timing.off_chip_latency=1000 timing.off_chip_bandwidth=1 timing.off_chip_buffer=1"},
         {"every latency and interval 1", all_units(1, 1, 1) + all_memories(0) +
                                              "timing.summed_height_table_ports=64 timing.summed_height_table_banks=64"},
-        // Transform, if none else: one part after another, 1000 cycles each
+        // at least Transform: one part after another, 1000 cycles each
         {"every latency and interval 1000, stalls",
          "tests.generation_limit=2 " + all_units(1000, 1000, 1) + stalls(105, 200, 1000), 100'000},
         {"narrow memories, one byte a cycle", every_table("width", 1)},

@@ -11,8 +11,8 @@
 #include "testbench/tests/support/checked_run.h"
 #include "testbench/tests/support/job_settings.h"
 
-// The same machine with the narrowest and the widest formats, and with odd ones: no decision or value beyond its bound,
-// a closed mesh, and one mesh from both modes and from the bare datapath.
+// The same machine with the narrowest and the widest formats, and with odd ones: every decision and value within its
+// bound, a closed mesh, and the same mesh from both modes and from the bare datapath.
 
 using namespace tessera;
 using namespace tessera::testing;
@@ -28,17 +28,17 @@ const std::string widest =
     "formats.normal_fraction=16 formats.texture_integer=12 formats.texture_fraction=12 "
     "formats.displacement_bits=16 formats.summed_height_bits=48 formats.screen_bits=31 "
     "formats.screen_fraction=16 formats.generation_bits=4 ";
-/// Primes, where there are any.
+/// Prime widths where possible.
 const std::string odd =
     "formats.position_bits=23 formats.position_fraction=7 formats.normal_bits=13 formats.normal_fraction=7 "
     "formats.texture_integer=7 formats.texture_fraction=5 formats.displacement_bits=11 "
     "formats.summed_height_bits=37 formats.screen_bits=19 formats.screen_fraction=3 "
     "formats.generation_bits=3 ";
-/// All range and no fraction.
+/// Integer bits only, no fraction.
 const std::string whole_numbers =
     "formats.position_bits=32 formats.position_fraction=0 formats.normal_bits=18 formats.normal_fraction=4 "
     "formats.texture_fraction=0 formats.screen_bits=31 formats.screen_fraction=0 ";
-/// All fraction: positions within -1 .. 1.
+/// Fraction bits only: positions within -1 .. 1.
 const std::string fractions =
     "formats.position_bits=32 formats.position_fraction=31 formats.screen_bits=31 "
     "formats.screen_fraction=20 ";
@@ -49,7 +49,7 @@ const std::string cylinder =
     "mesh.source=cylinder mesh.columns=8 mesh.rows=3 map.source=noise map.height=21 map.address_u=repeat "
     "displacement.scale=0.1 hardware.queue_capacity=8 ";  // what is spilled is packed by the formats
 
-/// The datapath without SystemC, which the machine equals, against exact arithmetic.
+/// Compares the datapath without SystemC, which equals the machine, with exact arithmetic.
 void check(const WidthRun& run) {
     INFO(run.conformance.first_mismatch);
     CHECK(run.conformance.mismatches == 0);
@@ -91,8 +91,8 @@ const CaseTable meshes("formats: ",
                            CHECK(run.setup.input_saturations.position == 0);
                            CHECK(run.setup.input_saturations.normal == 0);
                            const datapath::Saturations counted = run.pipeline.saturations();
-                           // by validation: 1.0 fits a normal, the farthest corner fits w, the model fits half of the
-                           // position's range
+                           // ensured by validation: 1.0 fits a normal, the farthest corner fits w, the model fits half
+                           // of the position's range
                            CHECK(counted.normal == 0);
                            CHECK(counted.screen_normal == 0);
                            CHECK(counted.view_distance == 0);
@@ -118,7 +118,7 @@ TEST_CASE("formats: what an intermediate of the datapath cannot hold is refused 
                                                       Catch::Contains("raise formats.generation_bits"));
 }
 
-// 5 integer bits hold texels up to 32; a register of the map's side has one bit more.
+// 5 integer bits hold texels up to 32; the registers of the map's size have one bit more.
 TEST_CASE("formats: a map larger than its registers hold is refused, even where no texture coordinate is") {
     Job job;
     job.formats.texture_integer = 5;
@@ -159,7 +159,7 @@ TEST_CASE("formats: any that a job may have, on any small job: within the bounds
         job.camera.viewport_height = random.integer(1, 1024);
         job.displacement.scale = std::ldexp(1.0, static_cast<int>(random.integer(-8, 1)));
         job.tests.generation_limit = 4;
-        job.tests.summed_height_threshold = 2;  // a step of the coarsest displacement and more
+        job.tests.summed_height_threshold = 2;  // more than a step of the coarsest displacement
         job.tests.highlight = random.coin();
         INFO("case " << k);
         try {

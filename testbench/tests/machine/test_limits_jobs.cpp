@@ -11,8 +11,8 @@
 #include "testbench/tests/support/job_settings.h"
 #include "testbench/tests/support/refusals.h"
 
-// Every key of a job at the ends of its range, beyond them, and at what no number should be: a message that
-// names it, or a mesh like any other.
+// Every key of a job at the ends of its range, beyond them, and at invalid numbers: the result is a message that names
+// the key, or a correct mesh.
 
 using namespace tessera;
 using namespace tessera::testing;
@@ -65,7 +65,7 @@ std::vector<Extreme> extremes_of(const Key& key) {
     return all;
 }
 
-/// Sets up the job and runs it. Nothing but a message may come of it, or a mesh that holds.
+/// Sets up the job and runs it. The result must be a message or a correct mesh.
 std::string outcome_of(const Job& job) {
     try {
         validate(job);
@@ -108,7 +108,7 @@ TEST_CASE("limits: every number of a job, at and beyond its range, is refused by
                     CHECK_THAT(message, Catch::Contains(key.name));
                     continue;
                 }
-                // timing is a simulation's: test_limits.cpp
+                // timing affects simulations only: test_limits.cpp
                 if (table.name == "timing" || key.name == "frames.count")
                     continue;
                 ran += outcome_of(job).empty() ? 1u : 0u;

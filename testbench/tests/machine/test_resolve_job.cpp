@@ -12,7 +12,7 @@
 #include "testbench/machine/resolve_job.h"
 #include "testbench/tests/support/refusals.h"
 
-// What a job leaves to the program, by values derived by hand.
+// The values that the program chooses for a job, against values derived by hand.
 
 using namespace tessera;
 using Catch::Contains;
@@ -49,7 +49,7 @@ glm::dvec3 vector(const std::array<double, 3>& a) {
     return {a[0], a[1], a[2]};
 }
 
-/// The largest part of the half picture that any of the points takes, in width or height.
+/// The largest fraction of half the picture that any of the points reaches, in width or height.
 double filled_part(const Job::Camera& camera, const std::vector<glm::dvec3>& points) {
     const glm::dvec3 backward = glm::normalize(vector(camera.eye) - vector(camera.target));
     const glm::dvec3 right = glm::normalize(glm::cross(vector(camera.up), backward));
@@ -84,12 +84,12 @@ TEST_CASE("the scale is an eighth of a flat mesh's largest extent, and a fortiet
     const HeightMap map = map_of(0, 1);
     CHECK(scale_of(make_plane(3, 3, 2, 2), map, Job{}) == 0.25);
     CHECK(scale_of(make_plane(3, 3, 12, 3), map, Job{}) == 1.5);
-    CHECK(scale_of(box(4, 3, 0.2), map, file_job()) == 0.5);  // 0.2 is less than a tenth of 3
+    CHECK(scale_of(box(4, 3, 0.2), map, file_job()) == 0.5);  // 0.2 is less than a tenth of 3: flat
     CHECK(scale_of(box(4, 3, 0.4), map, file_job()) == 0.1);
     CHECK(scale_of(box(40, 1, 0.4), map, file_job()) == 1);  // a rod is not flat
     CHECK(scale_of(make_sphere(8, 4, 500), map, Job{}) == 25);
     CHECK(scale_of(make_sphere(8, 4, 1e-3), map, Job{}) == 5e-5);
-    // A map in metres, 0..1 wanted: heights reach no further than the same part.
+    // With a map in metres instead of 0..1 the heights are the same fraction of the mesh's size.
     CHECK(scale_of(make_plane(3, 3, 2, 2), map_of(0, 1000), Job{}) == 0.25 / 1000);
     CHECK(scale_of(make_plane(3, 3, 2, 2), map_of(-1, 1), Job{}) == 0.125);
     Job job;
@@ -177,7 +177,7 @@ TEST_CASE("what is set of a camera stays, and the rest follows from it") {
     const Job::Camera above = resolve_job(job, plane, map).job.camera;
     CHECK(above.eye == job.camera.eye);
     CHECK(above.target == std::array<double, 3>{0, 0, 0.25});
-    CHECK(above.up == std::array<double, 3>{0, 1, 0});  // z points at the viewer
+    CHECK(above.up == std::array<double, 3>{0, 1, 0});  // z points towards the viewer
     CHECK(above.near_plane == 0.005);
 
     job.camera = {};

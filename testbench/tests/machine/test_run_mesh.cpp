@@ -21,7 +21,7 @@ using Corner = EmittedTriangle::Corner;
 
 constexpr std::int32_t one = 65536, unit = 16384, texel = 4096;
 
-/// At x, y, 0 in world units, with t = (x, y) / 4 of the map.
+/// At (x, y, 0) in world units, with t = (x, y) / 4 of the map.
 Corner corner(int x, int y, std::int32_t base_x = 0) {
     Corner c;
     c.position = {base_x, 0, 0};
@@ -37,7 +37,7 @@ EmittedTriangle triangle(const Corner& a, const Corner& b, const Corner& c) {
     return t;
 }
 
-/// What a run finds for itself, said.
+/// Replaces automatic values by the values that a run would choose.
 Job without_automatic(Job job) {
     job.displacement.scale = 0.25;
     job.camera.eye = {1.05, -2.9, 2.45};
@@ -66,7 +66,7 @@ bool repaired(const BaseMesh& mesh, const std::string& words) {
     return false;
 }
 
-/// The default job's, with this displacement scale.
+/// The default job's set-up with this displacement scale.
 MachineSetup setup_of(double scale) {
     Job job = without_automatic({});
     job.displacement.scale = scale;
@@ -92,7 +92,7 @@ TEST_CASE("a run's mesh as a base: displaced vertices, shared, complete") {
 }
 
 TEST_CASE("texture coordinates keep every bit, whatever the map's size") {
-    // as a float, 2999 + 1/4096 of 3000 texels is a third of a step off: two sides of a seam would round apart
+    // as a float, 2999 + 1/4096 of 3000 texels is a third of a step off: sides of a seam would round differently
     Corner fine = corner(4, 4);
     fine.texture = {2999 * texel + 1, 1001 * texel + 4095};
     const BaseMesh mesh = read_back({triangle(corner(0, 0), corner(4, 0), fine)}, {}, 3000);
@@ -102,7 +102,7 @@ TEST_CASE("texture coordinates keep every bit, whatever the map's size") {
 }
 
 TEST_CASE("vertices of a run that only their base position tells apart become one, and triangles so collapsed go") {
-    // Corner (4, 0) came of two places; the triangle between them has no edge any more that a neighbour needs.
+    // Corner (4, 0) came from two places; the triangle between them has no edge left that a neighbour needs.
     const BaseMesh mesh = read_back({triangle(corner(0, 0), corner(4, 0), corner(4, 4)),
                                      triangle(corner(4, 0), corner(4, 0, 7), corner(4, 4)),
                                      triangle(corner(4, 0, 7), corner(8, 0), corner(4, 4))});
@@ -113,8 +113,8 @@ TEST_CASE("vertices of a run that only their base position tells apart become on
 }
 
 TEST_CASE("a triangle without area that holds a T-vertex's place stays") {
-    // (2, 0) lies on the edge from (0, 0) to (4, 0): whole on one side, cut on the other, and the flat
-    // triangle between.
+    // (2, 0) lies on the edge from (0, 0) to (4, 0): unsplit on one side, split on the other, with the flat triangle
+    // between.
     const BaseMesh mesh = read_back(
         {triangle(corner(0, 0), corner(4, 0), corner(4, 4)), triangle(corner(4, 0), corner(0, 0), corner(2, 0)),
          triangle(corner(2, 0), corner(0, 0), corner(2, -4)), triangle(corner(4, 0), corner(2, 0), corner(2, -4))});
@@ -180,7 +180,7 @@ TEST_CASE("frame k of n: its scale, its folder, and nothing else") {
 TEST_CASE("another scale: what the host sends again is the normal map, S and the base mesh") {
     const MachineSetup low = setup_of(0.2), high = setup_of(0.25);
     REQUIRE(low.model_scale.scale == high.model_scale.scale);
-    // what makes it true: the machine holds nothing else that depends on S
+    // the reason: nothing else in the machine depends on S
     CHECK(low.map.codes == high.map.codes);
     CHECK(low.registers.formats.summed_height.bits == high.registers.formats.summed_height.bits);
 
@@ -210,10 +210,10 @@ TEST_CASE("the point of w and the Highlight Test's values are registers that the
     CHECK(next_frame_traffic(before, now).registers == 4);
     now = before;
     now.registers.formats.highlight_tag = true;
-    // H 3, cosine 1, threshold 1; its switch stands with the others
+    // H 3, cosine 1, threshold 1; its enable bit is in the same register as the others
     CHECK(register_words(now.registers).size() == 48 + 5);
     now.registers.formats.normal = datapath::Format::make_signed(18, 16);
-    CHECK(register_words(now.registers).size() == 48 + 6);  // a cosine of 34 bits
+    CHECK(register_words(now.registers).size() == 48 + 6);  // the cosine has 34 bits
 }
 
 TEST_CASE("a scale that makes the model's own change sends Transform's matrix again") {

@@ -11,7 +11,7 @@
 #include "testbench/tests/support/refusals.h"
 #include "testbench/tests/support/timed_checks.h"
 
-// What does not fit its format is counted: as often as integers of another width, in another place, say.
+// Values that do not fit their format are counted as often as a recount in the test, in other integer widths, says.
 
 using namespace tessera;
 using namespace tessera::testing;
@@ -20,7 +20,7 @@ using datapath::TrianglePass;
 
 namespace {
 
-/// Sees every decided pass.
+/// Observes every decided pass.
 class Watcher : public tlm::tlm_analysis_if<TrianglePass> {
   public:
     explicit Watcher(std::function<void(const TrianglePass&)> look) : look_(std::move(look)) {}
@@ -155,7 +155,7 @@ TEST_CASE("saturations: view distances, as 128 bit integers count them") {
     CHECK(counted.view_distance == expected);
 }
 
-// The host's normals have two integer bits, so that 1.0 fits: only a format of one saturates.
+// The host's normals have two integer bits, so that 1.0 fits: only a format with one saturates.
 TEST_CASE("saturations: normals of one integer bit, where a plane's own do not fit") {
     MachineSetup setup = setup_of(small_job("map.source=constant"));
     datapath::Formats& formats = setup.registers.formats;
@@ -189,7 +189,7 @@ TEST_CASE("saturations: opposite normals leave zero vectors, counted") {
         for (int k = 0; k < 3; ++k) {
             const datapath::Vertex &i = pass.edge_begin(k), &j = pass.edge_end(k);
             const datapath::EdgeTests& edge = pass.edges[static_cast<std::size_t>(k)];
-            // the sum of the ends is 0 or rounds to it: 1 is halved downwards
+            // the sum of the ends is 0 or rounds to 0: 1 / 2 is rounded down
             const auto mean_is_zero = [](const datapath::Direction& a, const datapath::Direction& b) {
                 const auto none = [](std::int32_t s) { return s == 0 || s == 1; };
                 return none(a.x + b.x) && none(a.y + b.y) && none(a.z + b.z);
@@ -207,7 +207,7 @@ TEST_CASE("saturations: opposite normals leave zero vectors, counted") {
 }
 
 TEST_CASE("saturations: generations beyond their field, with the Generation Test off") {
-    // spilled triangles are packed: what is in them fits their fields
+    // spilled triangles are packed: their values fit their fields
     const MachineSetup setup =
         setup_of(with_settings(full_split_job(1, 3),
                                "map.width=16 map.height=16 tests.generation=false formats.generation_bits=2 "
@@ -273,7 +273,7 @@ TEST_CASE("saturations: texture coordinates beyond a map that clamps are counted
 }
 
 TEST_CASE("saturations: what the host rounds is counted too") {
-    // S is twice the range of a map of one bit: 2^(bits - 1), one LSB more than its register holds
+    // S is twice the range of a one-bit map: 2^(bits - 1), one LSB more than its register holds
     const MachineSetup setup =
         setup_of(small_job("formats.displacement_bits=1 tests.summed_height_threshold=2 displacement.scale=1 "
                            "displacement.bias=-0.5 mesh.width=0.5 mesh.depth=0.5"));

@@ -5,15 +5,15 @@
 #include "testbench/tests/support/checked_run.h"
 #include "testbench/tests/support/job_settings.h"
 
-// Two modes, one mesh: whatever the timing, the stalls, the buffers and the queue's order, timed mode emits the bare
-// datapath's triangles, bit for bit.
+// Two modes, one mesh: with any timing, stalls, buffers and queue order, timed mode emits the bare datapath's
+// triangles, bit for bit.
 
 using namespace tessera;
 using namespace tessera::testing;
 
 namespace {
 
-/// About a thousand triangles of every size, and base triangles that do not split.
+/// About a thousand triangles of all sizes, and base triangles that do not split.
 const std::string small = "map.width=64 map.height=64 tests.summed_height_threshold=0.2 ";
 
 const std::string cylinder =
@@ -125,7 +125,7 @@ TEST_CASE("timed mesh: every item through its packed form, three tests units, a 
 
 TEST_CASE("timed mesh: a cylinder in repeat, whose rectangles wrap") {
     const CheckedRun run(with_settings(timed_job(), cylinder));
-    // up to nine entries where one wraps
+    // up to nine entries for one that wraps
     CHECK(run.pipeline.height_table.transactions() > 12 * run.pipeline.edges_tested());
     CHECK(run.pipeline.edges_tested() > 3000);
 }
@@ -137,8 +137,8 @@ TEST_CASE("timed mesh: culling") {
     CHECK(run.simulation.rasteriser.triangles() > 0);
 }
 
-// Each split puts back three more triangles than it takes, along one path of at most 12 generations; with some passes
-// under way besides, and their children.
+// Each split adds three triangles to the queue, net, along one path of at most 12 generations; some more passes, and
+// their children, are in flight.
 TEST_CASE("timed mesh: last in first out, 64 places are enough: nothing is spilled") {
     const CheckedRun run(with_settings(timed_job(), small + queue("lifo", 64)));
     CHECK(run.pipeline.triangle_queue.spilled() == 0);
@@ -146,7 +146,7 @@ TEST_CASE("timed mesh: last in first out, 64 places are enough: nothing is spill
     CHECK(run.pipeline.off_chip_memory.occupied_cycles() == 0);
 }
 
-// The same counts as without; only time differs.
+// The same counts as without stalls; only the time differs.
 TEST_CASE("timed mesh: stalls cost cycles and nothing else") {
     const CheckedRun run(with_settings(timed_job(), small + stalls(31, 300)));
     CHECK(run.pipeline.height_table.transactions() == 12 * run.pipeline.edges_tested());

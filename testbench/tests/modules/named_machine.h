@@ -13,7 +13,7 @@
 
 namespace tessera::testing {
 
-/// A machine with all that surrounds it under a name of its own: several stand in one simulation, which the test
+/// A machine with its whole environment under a name of its own: several can be in one simulation, which the test
 /// starts.
 struct NamedMachine : sc_core::sc_module {
     const MachineSetup& setup;
@@ -48,7 +48,7 @@ struct NamedMachine : sc_core::sc_module {
     void note_drained() { drained.push_back(sc_core::sc_time_stamp()); }
 };
 
-/// It has drained and emitted these triangles.
+/// Requires that it has drained and emitted these triangles.
 inline void expect_mesh(const NamedMachine& machine, const EmittedMesh& expected) {
     INFO(machine.name());
     CHECK(machine.finished());
@@ -58,13 +58,13 @@ inline void expect_bare_mesh(const NamedMachine& machine) {
     expect_mesh(machine, bare_mesh(machine.setup));
 }
 
-/// What a machine comes to in a simulation of its own.
+/// The result of a machine in a simulation of its own.
 struct AloneResult {
     std::uint64_t cycles = 0;
     std::uint64_t drained = 0;  ///< when for the last time, in time steps
 };
 
-/// Runs one in another process, since SystemC elaborates once a process. To be called before anything is built.
+/// Runs one in a child process, since SystemC elaborates once per process. Call it before anything is elaborated.
 inline AloneResult run_alone(const MachineSetup& setup) {
     const ChildEnd end = run_in_child([&]() -> std::string {
         NamedMachine machine("machine", setup);

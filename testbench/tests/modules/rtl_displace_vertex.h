@@ -41,18 +41,18 @@ class Wires {
     std::vector<bool> bits_;
 };
 
-/// Displace Vertex as another language would have it: wires in, wires out, an address and a code, one call a clock
-/// edge. It knows the tables of modules/sockets/README.md and the registers, but no item, no stream and no SystemC. The
-/// arithmetic is the datapath's.
+/// Displace Vertex as a model in another language: wires in, wires out, an address and a code, one call per clock edge.
+/// It uses the tables of modules/sockets/README.md and the registers, but no items, streams or SystemC. The arithmetic
+/// is the datapath's.
 class RtlDisplaceVertex {
   public:
-    /// latency: cycles from the map's answer to the result; stages: items in it at a time.
+    /// latency: cycles from the map's response to the result; stages: number of items it holds.
     RtlDisplaceVertex(const datapath::Registers& registers, int tag_bits, unsigned latency, std::size_t stages)
         : registers_(registers), tag_bits_(tag_bits), latency_(latency), stages_(stages) {}
 
     // Combinational.
 
-    /// Of the code an item needs, if it needs one.
+    /// The address of the code that an item needs, if any.
     std::optional<std::uint64_t> address(const Wires& in) const {
         if (is_normal(in))
             return std::nullopt;
@@ -62,7 +62,7 @@ class RtlDisplaceVertex {
                                        static_cast<std::uint32_t>(in.slice(t + bits_of(f.texture), f.texture.bits))};
         return texel_address(texel, registers_.displacement_map, registers_.map, f);
     }
-    /// The item's wires, and P' above them.
+    /// The item's wires, followed by P'.
     Wires result(const Wires& in, std::uint64_t code) {
         const datapath::Formats& f = registers_.formats;
         datapath::Position displaced{};
@@ -90,7 +90,7 @@ class RtlDisplaceVertex {
                 --place.cycles_left;
     }
     bool ready() const { return !taken_ && places_.size() < stages_; }
-    /// Takes an item; returns the address it asks for.
+    /// Takes an item; returns the address that it reads.
     std::optional<std::uint64_t> put(Wires in) {
         taken_ = true;
         const std::optional<std::uint64_t> asked = address(in);
@@ -100,7 +100,7 @@ class RtlDisplaceVertex {
             places_.push_back({result(in, 0), true, latency_});
         return asked;
     }
-    /// The code of the first item that lacks it.
+    /// The code of the first item that lacks one.
     void answer(std::uint64_t code) {
         for (Place& place : places_) {
             if (place.answered)
@@ -115,7 +115,7 @@ class RtlDisplaceVertex {
 
     std::size_t items() const { return places_.size(); }
     bool first_lacks_its_code() const { return !places_.empty() && !places_.front().answered; }
-    /// The next edge changes something.
+    /// Whether the next clock edge changes the state.
     bool counts() const {
         for (const Place& place : places_)
             if (place.answered && place.cycles_left > 0)
@@ -127,7 +127,7 @@ class RtlDisplaceVertex {
 
   private:
     struct Place {
-        Wires wires;  // of the item; once its code has come, of the result
+        Wires wires;  // those of the item; once its code has arrived, those of the result
         bool answered;
         unsigned cycles_left;
     };
@@ -163,7 +163,7 @@ class RtlDisplaceVertex {
     unsigned latency_;
     std::size_t stages_;
     std::deque<Place> places_;
-    bool taken_ = false;  // an item, in this cycle
+    bool taken_ = false;  // whether an item was taken in this cycle
 };
 
 }  // namespace tessera::testing

@@ -17,28 +17,28 @@
 #include "testbench/tests/support/job_settings.h"
 #include "testbench/tests/support/source_folder.h"
 
-// Every height test on base meshes of every kind, in both designs and both modes: closed, the bare recursion's mesh bit for
-// bit, every decision golden's within its bound. What the Rank Test cannot do on a base mesh the setup says.
+// Every height test on base meshes of every kind, in both designs and modes: closed, the bare recursion's mesh bit for
+// bit, every decision golden's within its bound. The set-up reports what the Rank Test cannot do.
 
 using namespace tessera;
 using namespace tessera::testing;
 
 namespace {
 
-/// Quads over the whole map whose inner lines lie on no multiple of a texel.
+/// Quads over the whole map, with inner lines at no multiple of a texel.
 BaseMesh plane_off_the_lattice() {
     BaseMesh mesh = make_plane(4, 3, 2, 2);
     for (BaseVertex& vertex : mesh.vertices) {
         for (const int axis : {0, 1}) {
             double& t = vertex.texture[axis];
-            t += 0.2 * t * t * (1 - t);  // 0 and 1 stay
+            t += 0.2 * t * t * (1 - t);  // 0 and 1 do not move
             vertex.position[axis] = 2 * t - 1;
         }
     }
     return mesh;
 }
 
-/// Six faces, each with the whole map, turned by quarters, so that their triangles clash on its texels.
+/// Six faces, each with the whole map, rotated by quarter turns, so that their triangles conflict on its texels.
 BaseMesh cube() {
     BaseMesh mesh;
     for (std::uint32_t face = 0; face < 6; ++face) {
@@ -129,12 +129,12 @@ MachineSetup setup_on(const Base& base, const std::string& settings) {
     return make_setup(resolve_job(job, mesh, map).job, mesh, map);
 }
 
-/// Whether edges are cut as the host ranks them, so that a bound holds.
+/// Whether edges are cut in the host's order of ranks, so that a bound holds.
 bool keeps_order(const datapath::Registers& registers) {
     return registers.triangulation == Triangulation::greatest_rank;
 }
 
-/// What the setup says of the base mesh and of the bound, and that it says no more of the height test.
+/// Requires the set-up's remarks about the base mesh and the bound, and no others about the height test.
 void check_remarks(const Base& base, const CheckedRun& run) {
     const datapath::Registers& registers = run.setup.registers;
     std::string of_base, of_bound;
@@ -152,7 +152,7 @@ void check_remarks(const Base& base, const CheckedRun& run) {
     CHECK(of_bound.empty() == (registers.formats.bound_bits == 0 || keeps_order(registers)));
 }
 
-/// No grid point is farther from the mesh, along the normal, than its threshold or what the setup says remains.
+/// No grid point is farther from the mesh, along the normal, than the threshold or the error that the set-up reports.
 void check_bound(const CheckedRun& run) {
     const MachineSetup& setup = run.setup;
     const datapath::Formats& formats = setup.registers.formats;

@@ -7,8 +7,8 @@
 #include "testbench/tests/support/checked_run.h"
 #include "testbench/tests/support/job_settings.h"
 
-// Designs with a Curvature or a Mipmap Test in the Summed Height Test's place: closed, the bare recursion's mesh bit for bit, every
-// decision golden's within its bound, nothing lost; with the host's table and with a table of random bits.
+// Designs with a Curvature or a Mipmap Test in place of the Summed Height Test: closed, the bare recursion's mesh bit
+// for bit, decisions golden's within their bounds, nothing lost; with the host's table and with random bits.
 
 using namespace tessera;
 using namespace tessera::testing;
@@ -23,7 +23,7 @@ MachineSetup curved(const std::string& settings) {
     return setup_of(with_settings(with_settings(timed_job(), alone), settings));
 }
 
-/// Any table is as good as the host's, as far as cracks go.
+/// Crack freedom does not depend on the table's content.
 MachineSetup with_random_table(MachineSetup setup) {
     std::mt19937_64 random(7);
     for (std::uint64_t& entry : setup.curvature_table.entries)
@@ -32,7 +32,7 @@ MachineSetup with_random_table(MachineSetup setup) {
     return setup;
 }
 
-/// Of the Curvature Test short edges read codes.
+/// With the Curvature Test short edges read codes.
 void check_design(const MachineSetup& setup, std::uint64_t least_splits) {
     const CheckedRun run(setup);
     REQUIRE(run.counts.edges_split > least_splits);
@@ -112,7 +112,7 @@ const CaseTable random_tables("a Curvature Table of random bits: ",
                               },
                               [](const Row& row) { check_design(with_random_table(curved(row.settings)), 500); });
 
-/// How the map's readers are joined.
+/// How the map's readers are connected.
 struct SidesRow {
     std::string name;
     std::string settings;

@@ -5,7 +5,7 @@
 #include "testbench/tests/support/timed_checks.h"
 #include "testbench/tests/support/timed_modules.h"
 
-// A machine that cannot go on says so, and who holds what and waits for whom.
+// A machine that cannot continue reports a deadlock: what each unit holds, and which unit it waits for.
 
 using namespace tessera;
 using namespace tessera::testing;
@@ -19,7 +19,7 @@ std::string line_of(const std::string& report, const std::string& unit) {
     return begin == std::string::npos ? std::string{} : report.substr(begin, report.find('\n', begin) - begin);
 }
 
-/// Cycles in the four states add up for a run that did not drain, too.
+/// The cycles in the four states add up also for a run that did not drain.
 void require_cycles_add_up(const Simulation& simulation) {
     for (const Unit* unit : simulation.pipeline.units())
         testing::require_cycles_add_up(*unit, simulation.cycles());
@@ -35,9 +35,9 @@ Job full_queue_job(Overflow overflow) {
 }  // namespace
 
 // First in first out, eight places. When the queue is full, Tessellation keeps a child; Pass or Tessellate keeps what
-// Tessellation does not take; the tests and Transform what Pass or Tessellate does not take; Get Triangle a
-// triangle whose parts nobody takes; and the queue's first triangle waits for Get Triangle: the ring is
-// closed.
+// Tessellation does not take; the tests and Transform keep what Pass or Tessellate does not take; Get Triangle keeps a
+// triangle whose parts are not taken; and the queue's first triangle waits for Get Triangle: the cycle of waiting units
+// is closed.
 TEST_CASE("a full queue that stalls is a deadlock, told unit by unit") {
     const MachineSetup setup = setup_of(full_queue_job(Overflow::stall));
     Simulation simulation(setup, 1'000'000, 1'000'000);
@@ -56,7 +56,7 @@ TEST_CASE("a full queue that stalls is a deadlock, told unit by unit") {
     CHECK(simulation.pipeline.triangle_queue.on_chip_high_water_mark() == 8);
     require_cycles_add_up(simulation);
     CHECK(simulation.pipeline.passes_under_way() > 0);
-    // who is idle says nothing
+    // an idle unit is not listed
     CHECK(line_of(report, "lighting").empty());
     CHECK(line_of(report, "off_chip_memory").empty());
 }
@@ -90,7 +90,7 @@ TEST_CASE("a full queue, last in first out, with stalls: a deadlock too, not a c
     require_cycles_add_up(simulation);
 }
 
-// The first decision takes 86 cycles, and in more than 20 of them something is called.
+// The first decision takes 86 cycles, and units are called in more than 20 of them.
 TEST_CASE("a machine that works and decides nothing within the bound is a livelock") {
     const MachineSetup setup = setup_of(timed_job());
     Simulation simulation(setup, 1'000'000, 20);
@@ -101,7 +101,7 @@ TEST_CASE("a machine that works and decides nothing within the bound is a livelo
     require_cycles_add_up(simulation);
 }
 
-// Every item on every channel held back for up to a million cycles: slow, but whoever is called gets something done.
+// Every item on every channel is stalled for up to a million cycles: slow, but each call makes progress.
 TEST_CASE("a machine that waits for a million cycles is none") {
     Job job = one_quad_job();
     job.timing.stalls = {1, 1000, 1'000'000};
@@ -109,15 +109,15 @@ TEST_CASE("a machine that waits for a million cycles is none") {
     CHECK(simulation.cycles() > 1'000'000);
 }
 
-// First in first out: all of a generation is decided before any of the next, so the first triangle is lit after
-// 18 * (1 + 4 + 16 + 64) passes of 36 cycles.
+// First in first out: all of a generation is decided before any of the next, so the first triangle is lit after 18 * (1
+// + 4 + 16 + 64) passes of 36 cycles.
 TEST_CASE("a triangle decided is progress, though none is lit for long") {
     TimedRun simulation(setup_of(full_split_job(3, 4)), 1000);
     CHECK(simulation.cycles() > 1530 * 36);
 }
 
-// Lighting, one triangle in 500 cycles, has places for all that wait for it: most are lit when the last has
-// long been decided, and each takes more than one cycle in which something is called.
+// Lighting takes 500 cycles per triangle and has places for all that wait for it: most are lit long after the last is
+// decided, and for each, units are called in more than one cycle.
 TEST_CASE("a triangle lit is progress, though none is decided any more") {
     MachineSetup setup = setup_of(full_split_job(2, 2));
     setup.design.timing.lighting = {4, 500, 128};
@@ -132,7 +132,7 @@ TEST_CASE("the bound on progress does not end a run that just keeps it") {
 
 namespace {
 
-/// Leaves one triangle waiting at its input for ever.
+/// Keeps one triangle waiting at its input for ever.
 struct Wall : sc_core::sc_module, CycleProcess {
     StreamInput<LitTriangle> in{"in"};
     Wall(const sc_core::sc_module_name& name, CycleScheduler& clock) : sc_module(name) {
@@ -144,7 +144,7 @@ struct Wall : sc_core::sc_module, CycleProcess {
 
 }  // namespace
 
-// Behind a rasteriser that takes one triangle and no other, units fill up one behind the other, up to the host.
+// Behind a rasteriser that takes only one triangle, units fill up one after another, back to the host.
 TEST_CASE("a rasteriser that takes nothing is a deadlock that begins at Lighting") {
     const MachineSetup setup = setup_of(full_split_job(3, 2));
     Pipeline pipeline("tessera", setup.registers, setup.design);
@@ -167,7 +167,7 @@ TEST_CASE("a rasteriser that takes nothing is a deadlock that begins at Lighting
     expect_blocked(pipeline.transform, pipeline.pass_or_tessellate);
     expect_blocked(pipeline.get_triangle, pipeline.calculate_new_p);
     expect_blocked(pipeline.triangle_queue, pipeline.get_triangle);
-    // register stages hold what they can and no more
+    // register stages hold no more than their capacity
     CHECK(pipeline.transform.activity().level() <= 20);
     CHECK(pipeline.lighting.activity().level() == 4);
 }

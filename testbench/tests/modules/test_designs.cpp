@@ -9,19 +9,19 @@
 #include "testbench/tests/support/job_settings.h"
 
 // Designs that leave out tests which cannot change a decision: the mesh, with its tags, and the reports' counts are
-// those of the paper's design; what is evaluated is what the rules of modules/README.md ask for, and no more.
+// those of the paper's design; exactly those tests are evaluated that the rules of modules/README.md require.
 
 using namespace tessera;
 using namespace tessera::testing;
 
 namespace {
 
-/// What a design has to evaluate, from a recursion that evaluates everything.
+/// The tests that a design must evaluate, from a recursion that evaluates everything.
 struct Expected {
     struct Note {
         bool base = false;
         unsigned final_edges = 0;
-        unsigned inside = 0;  // bit k: edge k is two children's
+        unsigned inside = 0;  // bit k: edge k belongs to two children
     };
     const MachineSetup& setup;
     bool cheap_first = setup.design.test_order == TestOrder::cheap_first;
@@ -29,7 +29,7 @@ struct Expected {
     bool final_edges = setup.registers.formats.final_edges || families;
     bool from_map = setup.registers.formats.codes;
 
-    std::uint64_t edges = 0, normal = 0, summed_height = 0, by_codes = 0;  // twice
+    std::uint64_t edges = 0, normal = 0, summed_height = 0, by_codes = 0;  // counted twice
     std::uint64_t split_by_both = 0, stopped_by_view_alone = 0, stopped_by_several = 0;
 
     static Note begin(const datapath::Triangle&) { return {true}; }
@@ -50,8 +50,8 @@ struct Expected {
             by_codes += its_height && codes && within_texels(pass, static_cast<int>(k)) ? once : 0u;
         }
     }
-    /// An edge of a child is final if it is a whole edge of the parent, from corner to corner, and half an edge if it
-    /// joins a corner to the midpoint (3 + k) of an edge k that begins or ends there; every other is inside the parent.
+    /// A child's edge is final if it is a whole edge of the parent, from corner to corner, and half an edge if it joins
+    /// a corner to the midpoint (3 + k) of an edge k that ends there; every other is inside the parent.
     static Note child(const std::array<std::uint8_t, 3>& corners) {
         Note note;
         for (unsigned k = 0; k < 3; ++k) {
@@ -239,7 +239,7 @@ const CaseTable designs(
         CHECK(totals.height_table_reads == (summed_height ? 6 * (expected.summed_height - expected.by_codes) : 0));
         if (expected.from_map && summed_height) {
             CHECK(expected.by_codes > 1000);
-            CHECK((expected.families || expected.by_codes < expected.summed_height));  // whose base edges have none
+            CHECK((expected.families || expected.by_codes < expected.summed_height));  // else base edges have no codes
         }
         const std::uint64_t corners = (run.setup.design.tests_units == 1 ? 3 : 6) * run.setup.base_triangles.size();
         const bool bilinear = run.setup.registers.formats.filter == datapath::MapFilter::bilinear;

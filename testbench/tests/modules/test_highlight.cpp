@@ -7,7 +7,7 @@
 #include "testbench/tests/support/checked_run.h"
 #include "testbench/tests/support/job_settings.h"
 
-// The whole machine with a Highlight Test: its meshes, its cycles, and what it is for.
+// The whole machine with a Highlight Test: its meshes, its cycles, and its effect.
 
 using namespace tessera;
 using namespace tessera::testing;
@@ -30,12 +30,12 @@ struct Row {
     std::string settings;
 };
 
-/// Meshes of which some edges are split by HT alone.
+/// Meshes in which some edges are split by HT alone.
 const CaseTable meshes(
     "Highlight Test: ",
     {
         Row{"half donut, functional, conforms", "mode=functional"},
-        // whose thresholds leave edges to the Highlight Test
+        // with thresholds that leave edges to the Highlight Test
         {"noisy sphere, narrow normals, functional, conforms",
          "mode=functional mesh.source=sphere mesh.columns=24 mesh.rows=12 map.source=noise "
          "map.address_u=repeat displacement.scale=0.02 formats.normal_bits=12 formats.normal_fraction=10 "
@@ -65,10 +65,10 @@ struct Timed {
 const CaseTable cycles(
     "Highlight Test: one triangle, ",
     {
-        // test_one_triangle.cpp: edge 2 starts in the Normal Test in 32, is read in 33, and is through 9 + 1 later, in
-        // 43, before the Summed Height Test's 47.
+        // test_one_triangle.cpp: edge 2 starts in the Normal Test in 32, is read in 33 and complete 9 + 1 later, in 43,
+        // before the Summed Height Test's 47.
         Timed{"86 cycles, as without", "", 86},
-        // The Summed Height Test is through in 41, the Normal Test in 43: 43 + 38, and the cycle numbered 0.
+        // The Summed Height Test is complete in 41, the Normal Test in 43: 43 + 38, plus cycle 0.
         {"two ports: one cycle more than the 81 without", "timing.summed_height_table_ports=2", 43 + 38 + 1},
         // 33 + 9 + 300 = 342.
         {"300 cycles for it", "timing.highlight_test_latency=300", 342 + 38 + 1},
@@ -80,8 +80,8 @@ const CaseTable cycles(
 
 }  // namespace
 
-// 18 base triangles, each split into four until generation 4 (test_throughput.cpp): the Summed Height Table's 36
-// cycles a pass bound it, and the Highlight Test asks for what is split anyway.
+// 18 base triangles, each split into four until generation 4 (test_throughput.cpp): bound by the Summed Height Table's
+// 36 cycles per pass; the Highlight Test only asks for edges that split anyway.
 TEST_CASE("Highlight Test: the paper's design is as fast with it") {
     Job job = with_highlight(full_split_job(3, 4));
     job.tests.highlight_normal_threshold = 0;
@@ -108,7 +108,7 @@ TEST_CASE("Highlight Test: registers follow from the light and the camera") {
     CHECK(tests.highlight_normal_threshold == 1 << 12);
     CHECK(setup.remarks.empty());
 
-    job.camera.eye = {0, 0, -3};  // against the light
+    job.camera.eye = {0, 0, -3};  // opposite the light
     job.camera.up = {0, 1, 0};
     const MachineSetup against = setup_of(job);
     CHECK(against.registers.tests.half_vector == std::array<std::int32_t, 3>{});
@@ -133,8 +133,8 @@ TEST_CASE("Highlight Test: splits in the highlight, and there only") {
         if (triangle.split_by != datapath::highlight_bit)
             continue;
         ++alone;
-        // A corner is an inserted vertex, its edge left whole by NT: its normal's components are within 0.12 of the
-        // lit one's, an angle of at most 12 degrees.
+        // A corner is an inserted vertex of an edge that NT did not split: its normal's components are within 0.12 of
+        // the lit one's, an angle of at most 12 degrees.
         std::int64_t nearest = cosine(triangle.corners[0].displaced_normal);
         for (const auto& corner : triangle.corners)
             nearest = std::max(nearest, cosine(corner.displaced_normal));
@@ -143,7 +143,7 @@ TEST_CASE("Highlight Test: splits in the highlight, and there only") {
     CHECK(alone > 1000);
 }
 
-// What it is for: as many triangles, but lighting per vertex nearer to lighting per texel where it shines.
+// The effect: with as many triangles, lighting per vertex is closer to lighting per texel in the highlight.
 TEST_CASE("Highlight Test: per-vertex highlights are better than those of a finer mesh of as many triangles") {
     Job job = functional_job();
     const MachineSetup with = setup_of(with_highlight(job));
@@ -181,7 +181,7 @@ TEST_CASE("per-vertex against per-texel light: a flat mesh has no error, a coars
     CHECK(none.texels >= 32 * 32);
     CHECK(none.texels == none.highlight_texels);
     CHECK(none.largest < 1e-9);
-    // Corners lit as if they faced away: every texel is off by the whole light.
+    // With corners lit as if they faced away every texel is off by the whole light.
     EmittedMesh dark = bare_mesh(flat);
     for (EmittedTriangle& triangle : dark.triangles)
         for (auto& corner : triangle.corners)

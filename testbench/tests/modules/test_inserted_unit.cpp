@@ -8,19 +8,19 @@
 #include "testbench/tests/support/timed_checks.h"
 #include "testbench/tests/support/timed_modules.h"
 
-// A unit that the machine does not have, put on one of its streams from outside modules/ (modules/README.md): written
-// from that page alone.
+// A unit that is not part of the machine, inserted into a stream from outside modules/, written only from
+// modules/README.md.
 
 using namespace tessera;
 using namespace tessera::testing;
 
 namespace {
 
-/// Pass-through between Displace Vertex and Transform: hands each item on as it came.
+/// A pass-through between Displace Vertex and Transform: forwards each item unchanged.
 ///
 /// In:   DisplacedPoint. Out: the same.
 /// Timing: one vertex, normal or edge per interval; latency 3, interval 1.
-/// Waits for Displace Vertex; held back by Transform.
+/// Waits for Displace Vertex; blocked by Transform.
 class PassThrough : public Stage<DisplacedPoint, DisplacedPoint> {
   public:
     static constexpr UnitTiming timing{3, 1, 1};  // latency, interval, buffer
@@ -64,7 +64,7 @@ TEST_CASE("pass-through alone: each item as it came, three cycles later, one a c
 }
 
 // test_one_triangle.cpp's derivation with D + 3 instead of D: V = 34, W = S = 35, J = 35 + 11 + 1 + 3 = 50; the normals
-// come through once more: 38 + 3. Cycle 91. Nine parts, three cycles each.
+// pass it once more: 38 + 3. Cycle 91. Nine parts, three cycles each.
 TEST_CASE("pass-through: one triangle, 92 cycles instead of 86") {
     const MachineSetup setup = one_triangle();
     PassThroughUnits units;
@@ -79,8 +79,8 @@ TEST_CASE("pass-through: one triangle, 92 cycles instead of 86") {
     CHECK(activity.cycles_in(State::blocked) == 0);
 }
 
-// The Summed Height Table binds (test_throughput.cpp): 5 + 3 + 36 a pass + 9. The 3 are its only pause, for the
-// first triangle's third edge, which waits for Transform: 6 now. The last pass needs no normals: no more at the end.
+// Bound by the Summed Height Table (test_throughput.cpp): 5 + 3 + 36 a pass + 9. Its only pause, while the first
+// triangle's third edge waits for Transform, is 6 instead of 3. The last pass needs no normals: no more at the end.
 TEST_CASE("pass-through: the default job, three cycles more") {
     const MachineSetup setup = setup_of(timed_job());
     PassThroughUnits units;

@@ -8,12 +8,12 @@
 #include "testbench/tests/support/job_settings.h"
 #include "testbench/tests/support/timed_checks.h"
 
-// One triangle through an idle machine: every cycle of its way, derived by hand.
+// One triangle through an idle machine: every cycle on its path, derived by hand.
 //
-// The triangle is a base triangle of a constant map: no edge splits, so it goes round twice, first with its three
+// The triangle is a base triangle of a constant map: no edge splits, so it makes two passes, first with its three
 // vertices and three edges, then, finished, with its three normals in screen space.
 //
-// First round. The host offers it in cycle 0 and Get Triangle takes it then; its parts leave one a cycle, a latency G
+// First round. The host offers it in cycle 0, when Get Triangle takes it; its parts leave one per cycle, a latency G
 // later: vertices in G, G + 1, G + 2, edges in G + 3, G + 4, G + 5, on both branches. Then
 //
 //   geometry   Calculate New P (P), a read of the displacement map (latency Md), Displace Vertex (D), Transform (T):
@@ -69,7 +69,7 @@ struct Row {
     std::uint64_t cycles;
 };
 
-/// The derivation above, worked out by hand for each.
+/// Cases of the derivation above, worked out by hand.
 const CaseTable derived(
     "one triangle, ",
     {
@@ -106,7 +106,7 @@ const CaseTable derived(
         CHECK(simulation.rasteriser.triangles() == 1);
     });
 
-/// Other designs, each with a derivation of its own.
+/// Other designs, each with its own derivation.
 const CaseTable designs(
     "one triangle, ",
     {
@@ -136,7 +136,7 @@ const CaseTable designs(
     [](const Row& row) {
         TimedRun simulation(one_triangle(with_settings(one_quad_job(), row.settings)));
         CHECK(simulation.cycles() == row.cycles);
-        const bool three_units = simulation.setup.design.tests_units == 3;  // which read six corners, not three
+        const bool three_units = simulation.setup.design.tests_units == 3;  // they read six corners instead of three
         CHECK(simulation.pipeline.normal_map.transactions() == (three_units ? 6 : 3) + 3);
     });
 
@@ -174,7 +174,7 @@ const CaseTable families(
 
 }  // namespace
 
-// What the header of each unit says, and the sums above rest on. The tests' own figures do not hold the
+// The units' figures in their headers, on which the sums above rest. The figures of the tests would not check the
 // defaults of units off the critical path.
 TEST_CASE("the paper's design: latency, interval and buffer of every unit and memory") {
     const Timing t;
@@ -234,7 +234,7 @@ TEST_CASE("one triangle, every latency another") {
     CHECK(derived_cycles(simulation.setup.design.timing) == 105 + 113 + 1);
     CHECK(simulation.cycles() == 105 + 113 + 1);
 
-    // and each unit keeps each item for its own latency, on the way or beside it
+    // and each unit keeps each item for its own latency, on the critical path or beside it
     const Pipeline& p = simulation.pipeline;
     const TessellationTests& tests = p.tessellation_tests[0];
     const std::pair<const Unit*, std::uint64_t> stays[] = {
@@ -261,20 +261,20 @@ TEST_CASE("one triangle: its parts and reads") {
     CHECK(p.normal_map.transactions() == 6);
     CHECK(p.height_table.transactions() == 36);
     CHECK(p.pass_or_tessellate.counts().normal_passes == 1);
-    // an idle machine blocks nobody but Calculate New U, from cycle 6, when the View Test's input is full, to 31, and
-    // Get Triangle's way to it is free: its input has room for edge 2
+    // an idle machine blocks only Calculate New U, from cycle 6, when the View Test's input is full, to 31; Get
+    // Triangle can still send to it: its input has room for edge 2
     for (const Unit* unit : p.units()) {
         INFO(unit->name());
         CHECK(unit->activity().cycles_in(State::blocked) ==
               (unit == &p.tessellation_tests[0].calculate_new_u ? 31 - 6 : 0));
     }
-    // Little, exactly: nothing is held up in Transform, nine parts of 20 cycles; in Lighting one of 4
+    // Little's law, exactly: nothing is held up in Transform, with nine parts of 20 cycles; in Lighting one of 4
     CHECK(p.transform.activity().item_cycles() == 9 * 20);
     CHECK(p.lighting.activity().item_cycles() == 4);
     CHECK(p.displace_vertex.activity().item_cycles() == 6 * (1 + 6) + 3 * 6);
 }
 
-// What a triangle's stages take cannot depend on the clock's period.
+// The cycles of a triangle's stages must not depend on the clock's period.
 TEST_CASE("one triangle: cycles do not depend on the clock's period, time does") {
     TimedRun simulation(one_triangle(with_settings(one_quad_job(), "timing.clock_period=1234")));
     CHECK(simulation.cycles() == 86);

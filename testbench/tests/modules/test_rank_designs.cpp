@@ -11,8 +11,8 @@
 #include "testbench/tests/support/checked_run.h"
 #include "testbench/tests/support/job_settings.h"
 
-// Designs with a Rank Test in the Summed Height Test's place: closed, the bare recursion's mesh bit for bit, every
-// decision and cut golden's, nothing lost; with the host's tables and with tables of random bits.
+// Designs with a Rank Test in place of the Summed Height Test: closed, equal to the bare recursion's mesh bit for bit,
+// every decision and cut golden's, nothing lost; with the host's tables and with tables of random bits.
 
 using namespace tessera;
 using namespace tessera::testing;
@@ -28,7 +28,7 @@ MachineSetup ranked(const std::string& settings) {
     return setup_of(with_settings(with_settings(timed_job(), on_a_lattice), settings));
 }
 
-/// Any table is as good as the host's, as far as cracks go.
+/// Crack freedom does not depend on the tables' content.
 MachineSetup with_random_ranks(MachineSetup setup, unsigned seed) {
     std::mt19937 random(seed);
     const datapath::Formats& formats = setup.registers.formats;
@@ -40,7 +40,7 @@ MachineSetup with_random_ranks(MachineSetup setup, unsigned seed) {
         entry = static_cast<std::uint8_t>(random() % 200);
     setup.registers.tests.rank_threshold = (1 << formats.rank_bits) / 3;
     setup.registers.tests.bound_threshold = (1 << formats.bound_bits) / 2;
-    if (formats.distances) {  // so that at the mesh's centre the same entries ask
+    if (formats.distances) {  // so that at the mesh's centre the same entries ask for a split
         const auto level = static_cast<std::int32_t>(datapath::distance_level(
             2 * std::uint64_t{datapath::eye_distance({}, setup.registers.transform, formats)}));
         setup.registers.tests.rank_threshold = 65536 / 3 - level;
@@ -49,8 +49,8 @@ MachineSetup with_random_ranks(MachineSetup setup, unsigned seed) {
     return setup;
 }
 
-/// One read of the Rank Table an edge that the test is asked for and that has a midpoint on the lattice, no other:
-/// CheckedRun compares them.
+/// Exactly one read of the Rank Table for each edge that the test evaluates and that has a midpoint on the lattice:
+/// CheckedRun compares the counts.
 void check_design(const MachineSetup& setup, std::uint64_t least_splits) {
     const CheckedRun run(setup);
     REQUIRE(run.counts.edges_split > least_splits);

@@ -18,15 +18,15 @@
 #include "testbench/tests/support/timed_modules.h"
 
 // Units replaced from outside modules/ (modules/README.md, "How to replace a unit"): by another formula, by a model
-// that sees packed items alone, by the same unit in another context.
+// that uses only packed items, by the same unit in another context.
 
 using namespace tessera;
 using namespace tessera::testing;
 
 namespace {
 
-/// Compares half the difference: a comparator one bit narrower. The machine's own unit decides so with twice the
-/// threshold and one more.
+/// Compares half the difference: a comparator one bit narrower. The machine's own unit decides the same with twice the
+/// threshold plus one.
 class HalvedHeightTest : public SummedHeightTest {
   public:
     using SummedHeightTest::SummedHeightTest;
@@ -46,7 +46,7 @@ class HalvedHeights : public UnitFactory {
     }
 };
 
-/// Displace Vertex in another language: its items as bits, its cycles one by one.
+/// Displace Vertex as in another language: items as bits, cycle by cycle.
 class PackedDisplaceVertex : public DisplaceVertex {
   public:
     PackedDisplaceVertex(const sc_core::sc_module_name& name, const UnitContext& context)
@@ -104,7 +104,7 @@ class PackedDisplaceVertex : public DisplaceVertex {
     }
 
   private:
-    /// What is on offer stays where it is until it is taken.
+    /// An offered item stays where it is until it is taken.
     bool deliver() {
         if (!offered_)
             out_ = item_of(rtl_.out(), origins_.front());
@@ -133,8 +133,8 @@ class PackedDisplaceVertex : public DisplaceVertex {
 
     int tag_bits_;
     RtlDisplaceVertex rtl_;
-    std::deque<Origin> origins_;  // of the items in it: they have no wires
-    std::uint64_t edge_ = 0;      // the cycle of the last
+    std::deque<Origin> origins_;  // those of the items in it, which have no wires
+    std::uint64_t edge_ = 0;      // the cycle of the last clock edge
     DisplacedPoint out_;
     bool offered_ = false;
 };
@@ -145,7 +145,7 @@ class PackedDisplaceVertices : public UnitFactory {
     }
 };
 
-/// Stalls for the Summed Height Test alone.
+/// Stalls only the Summed Height Test.
 class StalledHeights : public UnitFactory {
     std::unique_ptr<SummedHeightTest> summed_height_test(Name name, const UnitContext& context) override {
         Design design = context.design;
@@ -154,7 +154,7 @@ class StalledHeights : public UnitFactory {
     }
 };
 
-/// Other registers for the Summed Height Test alone.
+/// Changes the registers of the Summed Height Test only.
 class OtherThreshold : public UnitFactory {
   public:
     explicit OtherThreshold(const datapath::Registers& registers) : registers_(registers) {}
@@ -167,7 +167,7 @@ class OtherThreshold : public UnitFactory {
     const datapath::Registers& registers_;
 };
 
-/// Another latency for Calculate New P alone.
+/// Changes the latency of Calculate New P only.
 class SlowCalculateNewP : public UnitFactory {
     std::unique_ptr<CalculateNewP> calculate_new_p(Name name, const UnitContext& context) override {
         Design design = context.design;
@@ -176,7 +176,7 @@ class SlowCalculateNewP : public UnitFactory {
     }
 };
 
-/// A value that no texture coordinate's wires can hold, on its way to the rasteriser, which does not look at it.
+/// Sends the rasteriser, which ignores it, a texture coordinate too large for its wires.
 class WideLighting : public Lighting {
   public:
     using Lighting::Lighting;
@@ -195,7 +195,7 @@ class WideUnits : public UnitFactory {
     }
 };
 
-/// A unit of its own: halves the light of every corner.
+/// An additional unit: halves the light of every corner.
 class HalfLight : public Stage<LitTriangle, LitTriangle> {
   public:
     static constexpr UnitTiming timing{3, 2, 4};  // latency, interval, buffer
@@ -224,7 +224,7 @@ struct LitTriangles : tlm::tlm_analysis_if<LitTriangle> {
     void write(const LitTriangle& triangle) override { all.push_back(triangle); }
 };
 
-/// Objects of exactly this type below another.
+/// The objects below `root` with exactly this type.
 template <class Type>
 unsigned count_below(const sc_core::sc_object& root) {
     unsigned count = 0;
@@ -238,7 +238,7 @@ Job in_mode(Mode mode, Job job = {}) {
     return job;
 }
 
-/// To the last cycle of each state of each unit.
+/// Requires equal numbers of cycles in each state of each unit.
 void expect_same_cycles(NamedMachine& left, NamedMachine& right) {
     CHECK(left.cycles() == right.cycles());
     for (std::size_t k = 0; k < left.pipeline.units().size(); ++k) {
@@ -253,14 +253,14 @@ void expect_same_cycles(NamedMachine& left, NamedMachine& right) {
     }
 }
 
-/// With which the machine's own Summed Height Test decides as the halved one.
+/// Registers with which the machine's own Summed Height Test decides as the halved one.
 MachineSetup equal_to_halved(MachineSetup setup) {
     std::uint64_t& threshold = setup.registers.tests.summed_height_threshold;
     threshold = 2 * threshold + 1;
     return setup;
 }
 
-/// The halved test's machine beside one of equal registers.
+/// Compares the halved test's machine with one of equivalent registers.
 void expect_halved_test(const Job& job) {
     const MachineSetup setup = setup_of(job);
     const MachineSetup equal = equal_to_halved(setup);
@@ -286,7 +286,7 @@ void expect_halved_test(const Job& job) {
         expect_same_cycles(halved, own);
 }
 
-/// Returns for how many cycles the packed unit was blocked.
+/// Returns the number of cycles in which the packed unit was blocked.
 std::uint64_t expect_same_as_packed(const MachineSetup& setup) {
     PackedDisplaceVertices units;
     NamedMachine packed("packed", setup, &units);

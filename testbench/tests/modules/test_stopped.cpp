@@ -8,8 +8,8 @@
 #include "testbench/tests/support/job_settings.h"
 #include "testbench/tests/support/timed_checks.h"
 
-// A machine that is stopped anywhere, cycle by cycle: a unit says that it holds something while it does, in
-// whole words, and what it says of the pipeline as a whole is true.
+// A machine that is stopped in any cycle: a unit describes its contents, in complete phrases, exactly while it holds
+// something, and the pipeline's overall state is correct.
 
 using namespace tessera;
 using namespace tessera::testing;
@@ -18,7 +18,7 @@ using Texts = std::set<std::string>;
 
 namespace {
 
-/// One thing after another, each of them said: no separator without something on both sides.
+/// A list without empty elements: each separator has text on both sides.
 bool is_well_formed(const std::string& text) {
     for (const char* broken : {", ,", "; ;", ", ;", "; ,", "  "})
         if (text.find(broken) != std::string::npos)
@@ -26,7 +26,7 @@ bool is_well_formed(const std::string& text) {
     return text.find_first_of(",; ") != 0 && text.find_last_of(",; ") != text.size() - 1;
 }
 
-/// Runs the machine cycle by cycle. All that its units said they held, with digits as #.
+/// Runs the machine cycle by cycle. Returns all descriptions of units' contents, with digits as #.
 Texts texts_of_every_cycle(const MachineSetup& setup) {
     Simulation simulation(setup, 1'000'000, 1'000'000);
     Pipeline& pipeline = simulation.pipeline;
@@ -60,7 +60,7 @@ bool any_contains(const Texts& texts, const std::string& unit, const std::string
     return false;
 }
 
-/// What there is to see whenever Pipeline::drained() is notified, of base triangles that become 16 each.
+/// Records the state whenever Pipeline::drained() is notified, with base triangles that become 16 each.
 struct DrainedWatch : sc_core::sc_module {
     explicit DrainedWatch(Simulation& simulation) : sc_module("watch"), simulation_(simulation) {
         SC_HAS_PROCESS(DrainedWatch);
@@ -83,7 +83,7 @@ struct DrainedWatch : sc_core::sc_module {
     Simulation& simulation_;
 };
 
-/// Two frames of 8 base triangles. Returns the notifications.
+/// Two frames of 8 base triangles. Returns the number of notifications.
 unsigned expect_drained_when_empty(const Job& job) {
     const MachineSetup setup = setup_of(job);
     Simulation simulation(setup, 1'000'000);
@@ -117,8 +117,8 @@ const CaseTable stopped(
              {"transform", "waiting at the input"},
              {"summed_height_table", "one waiting at the input"},
              {"off_chip_memory", "one waiting at the input"}}},
-        // A triangle's nine edges take the tests some sixty cycles: each of the last three units then waits for the one
-        // behind it.
+        // A triangle's nine edges take some sixty cycles in the tests: each of the last three units then waits for the
+        // next one.
         {"every unit slower to begin than to end, a queue of three that spills",
          every_unit("latency", 1) + every_unit("interval", 7) + every_unit("buffer", 1) +
              "hardware.queue_capacity=3 hardware.queue_order=lifo timing.pass_or_tessellate_interval=100 "
@@ -150,7 +150,7 @@ TEST_CASE("drained: timed, notified once a frame, when all has gone out") {
     CHECK(expect_drained_when_empty(full_split_job(2, 2)) == 2);
 }
 
-// The host may wait between two base triangles, and the machine be empty.
+// The host may wait between two base triangles while the machine is empty.
 TEST_CASE("drained: functional, notified when all that came in has gone out") {
     Job job = full_split_job(2, 2);
     job.mode = Mode::functional;

@@ -9,7 +9,7 @@
 #include "testbench/tests/support/job_settings.h"
 #include "testbench/tests/support/timed_checks.h"
 
-// Long runs: the slowest unit's interval times its work, and the cycles the machine takes to fill and to drain, to the
+// Long runs: the slowest unit's interval times its work, plus the cycles to fill and to drain the machine, exact to the
 // cycle where that can be derived.
 //
 // The mesh: 18 base triangles, each split into four until generation 4: 18 * (1 + 4 + 16 + 64 + 256) = 6138 passes,
@@ -27,14 +27,14 @@ constexpr std::uint64_t passes = 6138;
 constexpr std::uint64_t finished = 18 * 256;
 constexpr std::uint64_t parts = 32292;
 
-// From the first cycle until the first edge's first address: Get Triangle 1, its three vertices go first, Calculate
-// New U 1. With a Tessellation Tests unit for each edge only its two vertices go first.
+// From the first cycle until the first edge's first address: Get Triangle 1, then its three vertices, Calculate New U
+// 1. With a Tessellation Tests unit for each edge only two vertices precede it.
 constexpr std::uint64_t fill = 5;
 constexpr std::uint64_t fill_of_three = 4;
 // After the last address: data 1, Summed Height Test 3, Pass or Tessellate 1, Lighting 4.
 constexpr std::uint64_t drain = 9;
-// From the cycle a base triangle is taken in until its corners are on the screen (test_one_triangle.cpp): the longest
-// that the View Test, waiting for one, can keep its edges from the other tests.
+// From the cycle in which a base triangle is taken until its corners are on the screen (test_one_triangle.cpp): the
+// longest time for which the View Test, waiting for one, can keep its edges from the other tests.
 constexpr std::uint64_t until_on_screen = 31;
 
 MachineSetup full_split(const std::string& settings = "") {
@@ -65,7 +65,7 @@ const Unit& unit_named(const Pipeline& pipeline, const std::string& name) {
     return **std::find_if(units.begin(), units.end(), [&](const Unit* unit) { return unit->basename() == name; });
 }
 
-/// Cycles, from `least` to `most`, and for how many of them one unit is occupied.
+/// Limits of the run's cycles, and the number of cycles for which one unit is occupied.
 struct Bound {
     std::string name;
     std::string settings;
@@ -80,11 +80,11 @@ const char* const short_edges =
     "hardware.height_test=curvature tests.curvature_threshold=0 map.width=24 map.height=24 map.address_u=repeat "
     "map.address_v=repeat tests.tex_coord=false";
 constexpr std::uint64_t short_passes = passes - 18 * (1 + 4);
-// With ports to spare, the first part leaves Get Triangle in cycle 1; the last takes Calculate New P 1, the map 1,
-// Displace Vertex 6, Transform 20, Pass or Tessellate 1, Lighting 4 to come out.
+// With ports to spare the first part leaves Get Triangle in cycle 1; the last still takes Calculate New P 1, the map 1,
+// Displace Vertex 6, Transform 20, Pass or Tessellate 1, Lighting 4.
 constexpr std::uint64_t a_part_a_cycle = 1 + parts + 1 + 1 + 6 + 20 + 1 + 4;
-// Transform every 8 cycles starts a part first in cycle 9 (Get Triangle 1, Calculate New P 1, map 1, Displace Vertex
-// 6); the last, 8 * (parts - 1) later, is out 20 later, the triangle decided 1, lit 4 later.
+// With Transform every 8 cycles the first part starts in cycle 9 (Get Triangle 1, Calculate New P 1, map 1, Displace
+// Vertex 6); the last, 8 * (parts - 1) later, is out 20 later; the triangle is decided 1 later and lit 4 later.
 constexpr std::uint64_t transform_every_8 = 9 + 8 * (parts - 1) + 20 + 1 + 4 + 1;
 // Two pipelines: parts 0, 2, 4 ... start in 9, 17, 25 ...; parts 1, 3, 5 ... in 10, 18, 26 ...; the last one is odd.
 constexpr std::uint64_t two_every_8 = 10 + 8 * (parts / 2 - 1) + 20 + 1 + 4 + 1;
@@ -92,46 +92,46 @@ constexpr std::uint64_t two_every_8 = 10 + 8 * (parts / 2 - 1) + 20 + 1 + 4 + 1;
 const CaseTable rates(
     "",
     {
-        // 18 cycles a pass; the first triangle's first two edges are through in 5 to 16, its third comes in 32.
+        // 18 cycles per pass; the first triangle's first two edges are complete in 5 to 16, its third arrives in 32.
         Bound{"two ports on the Summed Height Table: 18 cycles a pass", "timing.summed_height_table_ports=2",
               fill + 15 + 18 * passes + drain, fill + 15 + 18 * passes + drain, "summed_height_table", 18 * passes},
-        // 9 cycles a pass: still more than a pass has parts (at most 6). A base triangle's 31 cycles to the screen are
-        // now longer than the work on the ones before it, so each of 18 may hold the table up for so long at most.
+        // 9 cycles per pass: still more than a pass has parts (at most 6). A base triangle's 31 cycles to the screen
+        // are now longer than the work on the ones before it, so each of 18 may delay the table by at most that.
         {"four ports on the Summed Height Table: 9 cycles a pass, still bound by it",
          "timing.summed_height_table_ports=4", fill + 9 * passes + drain,
          fill + 9 * passes + drain + base* until_on_screen, "summed_height_table", 9 * passes},
-        // 64 ports: a rectangle takes no more than its cycle, and what binds is one part a cycle, out of Get Triangle
-        // and through Calculate New P, Displace Vertex and Transform alike.
+        // 64 ports: a rectangle takes one cycle, and the limit is one part per cycle, from Get Triangle and through
+        // Calculate New P, Displace Vertex and Transform alike.
         {"with ports to spare a part a cycle is what binds", "timing.summed_height_table_ports=64", a_part_a_cycle,
          a_part_a_cycle + base* until_on_screen, "get_triangle", parts},
-        // Four cycles an edge, and each of a base triangle's three vertices, on both maps. The Summed Height Test, with 64
-        // ports, takes one.
+        // Four cycles per edge, and for each of a base triangle's three vertices, on both maps. The Summed Height Test,
+        // with 64 ports, takes one.
         {"a bilinear filter, ports to spare on the Summed Height Table: 12 cycles a pass",
          "hardware.displacement_filter=bilinear timing.summed_height_table_ports=64", 4 * (3 * passes + 3 * base),
          4 * (3 * passes + 3 * base) + 100 + base* until_on_screen, "normal_map", 4 * (3 * passes + 3 * base)},
         // The Normal Test asks for every split that the Generation Test allows: the table is hardly read.
         {"cheap tests first, one port: a part a cycle is what binds", "hardware.test_order=cheap_first", a_part_a_cycle,
          a_part_a_cycle + base* until_on_screen, "get_triangle", parts},
-        // Edges of eight and four texels read the table, those of the 18 * (16 + 64 + 256) passes below, of two texels and
-        // less, three codes each, through ports that Displace Vertex does not use.
+        // Edges of eight and four texels read the table. Those of the 18 * (16 + 64 + 256) passes below, of two texels
+        // and less, read three codes each, through ports that Displace Vertex does not use.
         {"a Curvature Test, most edges short: 9 cycles a pass", short_edges, 9 * short_passes,
          9 * short_passes + 3 * (passes - short_passes) + 100 + base* until_on_screen, "displacement_map_for_tests",
          9 * short_passes},
-        // They share the one port: nothing gained but the first triangle's three cycles and one vertex.
+        // They share the one port: the only gain is the first triangle's three cycles and one vertex.
         {"three tests units on one port: 36 cycles a pass as before", "hardware.tests_units=3",
          fill_of_three + 36 * passes + drain, fill_of_three + 36 * passes + drain, "summed_height_table", 36 * passes},
         {"three tests units on four ports: 9 cycles a pass",
          "hardware.tests_units=3 timing.summed_height_table_ports=4", fill_of_three + 9 * passes + drain,
          fill_of_three + 9 * passes + drain + base* until_on_screen, "summed_height_table", 9 * passes},
-        // The table, with four ports, needs 9 cycles of the 24 and more that three edges take here.
+        // With four ports the table needs 9 of the 24 or more cycles that three edges take here.
         {"Transform every 8 cycles binds: 8 cycles a part",
          "timing.summed_height_table_ports=4 timing.transform_interval=8", transform_every_8, transform_every_8,
          "transform", 8 * parts},
         {"two Transform pipelines every 8 cycles: 4 cycles a part",
          "timing.summed_height_table_ports=4 timing.transform_interval=8 hardware.transform_pipelines=2", two_every_8,
          two_every_8, "transform", 4 * parts},
-        // 6120 children, one every 20 cycles, also from one pass's last to the next one's first. When the last is made,
-        // the finished ones may still wait for the table, nine cycles each.
+        // 6120 children, one every 20 cycles, also from the last of one pass to the first of the next. When the last is
+        // made, the finished ones may still wait for the table, nine cycles each.
         {"Tessellation every 20 cycles binds where the tests take less",
          "timing.summed_height_table_ports=4 timing.tessellation_interval=20", 20 * (passes - base - 1),
          20 * (passes - base) + 9 * finished + 500, "tessellation", 20 * (passes - base), true},
@@ -160,17 +160,17 @@ const CaseTable rates(
 
 }  // namespace
 
-// One port takes 3 edges x 3 rectangles x 4 entries = 36 cycles a pass, without a break but for one: the
-// first triangle's third edge comes in cycle 32 (test_one_triangle.cpp), 3 after the first two's 24 entries
-// have been read in 5 to 28. From then on the next triangle's edges wait when one is through.
+// One port takes 3 edges x 3 rectangles x 4 entries = 36 cycles per pass, with a single pause: the first triangle's
+// third edge arrives in cycle 32 (test_one_triangle.cpp), 3 after the first two's 24 entries have been read in 5 to 28.
+// From then on the next triangle's edges wait when one is complete.
 TEST_CASE("the paper's design is bound by the Summed Height Table: 36 cycles a pass") {
     FullSplitRun simulation;
     const Pipeline& p = simulation.pipeline;
     CHECK(simulation.cycles() == fill + 3 + 36 * passes + drain);
     CHECK(p.height_table.activity().cycles_in(State::busy) == 36 * passes);
     CHECK(p.height_table.occupied_cycles() == 36 * passes);
-    // and the unit that reads it works 3 cycles on each edge and waits for it, and no other, the rest of that
-    // time; behind the first triangle's second edge, and the last, there is nothing to wait for
+    // and only the unit that reads it works 3 cycles on each edge and waits for it the rest of that time; behind the
+    // first triangle's second edge, and behind the last, there is nothing to wait for
     const Activity& test = p.tessellation_tests[0].height_test.activity();
     CHECK(test.cycles_in(State::busy) == 3 * 3 * passes);
     CHECK(test.cycles_in(State::waiting_for_memory) == 36 * passes - 3 * (3 * passes - 2));
@@ -204,15 +204,15 @@ TEST_CASE("two machines of the paper's design: half the passes each, in half the
     CHECK(simulation.monitor.mesh.triangles.size() == finished);
 }
 
-// Four banks instead: a rectangle's corners lie in banks as they fall, so no better than four ports, and with one port
-// each no worse than one.
+// Four banks instead: the corners' banks are arbitrary, so no better than four ports, and with one port each no worse
+// than one.
 TEST_CASE("four banks of the Summed Height Table are between one port and four") {
     FullSplitRun simulation("timing.summed_height_table_banks=4");
     CHECK(simulation.cycles() > fill + 9 * passes + drain);
     CHECK(simulation.cycles() < fill + 3 + 36 * passes + drain);
 }
 
-// Without conflicts eight banks would give an edge's 12 entries in 1.5 cycles, a pass's in 4.5; four ports take 9.
+// Without conflicts eight banks would read an edge's 12 entries in 1.5 cycles, a pass's in 4.5; four ports take 9.
 TEST_CASE("eight banks entry by entry: more than eight cycles a pass") {
     FullSplitRun simulation("timing.summed_height_table_banks=8");
     CHECK(simulation.cycles() > 8 * passes);
@@ -233,7 +233,7 @@ TEST_CASE("Get Triangle of latency 200 binds: 200 cycles a pass") {
     require_sole_bottleneck(simulation, &simulation.pipeline.get_triangle);
 }
 
-// Eight triangles may be under way at the join, so one a 400 / 8 cycles at most, where the tests take nine.
+// Eight triangles may be in flight at the join, so at most one per 400 / 8 cycles, where the tests take nine.
 TEST_CASE("a Transform of latency 400 is what the join waits for") {
     FullSplitRun simulation("timing.summed_height_table_ports=4 timing.transform_latency=400");
     const Pipeline& p = simulation.pipeline;
@@ -243,8 +243,8 @@ TEST_CASE("a Transform of latency 400 is what the join waits for") {
     CHECK(2 * for_transform > simulation.cycles());
 }
 
-// As many banks as a row has entries put the corners of a rectangle that lie below one another into one bank: it takes
-// two cycles, and the next one waits when it needs either bank, while nearly all banks idle.
+// With as many banks as a row has entries, the corners of a rectangle in one column are in one bank: it takes two
+// cycles, and the next one waits if it needs either bank, while nearly all banks idle.
 TEST_CASE("banks in conflict are a bottleneck though their ports idle") {
     MachineSetup setup = full_split();
     setup.design.timing.summed_height_table.banks = setup.registers.height_table.columns;
@@ -267,8 +267,8 @@ TEST_CASE("an interval that lasts is no lack of work") {
     require_sole_bottleneck(simulation, &p.displace_vertex);
 }
 
-// Little's law, exactly: where nothing is ever held up, what is in a unit, summed over all cycles, is items
-// times latency: mean occupancy = throughput * latency.
+// Little's law, exactly: if nothing is held up, a unit's contents, summed over all cycles, are items times latency:
+// mean occupancy = throughput * latency.
 TEST_CASE("mean occupancy is throughput times latency in units that are never blocked") {
     FullSplitRun simulation;
     const Pipeline& p = simulation.pipeline;

@@ -6,7 +6,7 @@
 #include "testbench/tests/support/job_settings.h"
 #include "testbench/tests/support/timed_checks.h"
 
-// Machines of different clocks, modes and designs in one simulation: each does what it does alone.
+// Machines of different clocks, modes and designs in one simulation: each behaves as it does alone.
 
 using namespace tessera;
 using namespace tessera::testing;
@@ -20,7 +20,7 @@ Job three_tests_units_job() {
 
 const JobResult& default_result = result_of("half_donut");
 
-/// Once, in the last cycle of its own clock.
+/// Requires exactly one notification, in the last cycle of its own clock.
 void expect_drained_in_last_cycle(const NamedMachine& machine) {
     INFO(machine.name());
     REQUIRE(machine.drained.size() == 1);
@@ -42,7 +42,7 @@ struct EdgeCounter : sc_core::sc_module {
     void count() { ++edges; }
 };
 
-/// A queue that fills up; `overflow`: what happens then.
+/// A queue that fills up; `overflow` selects the reaction.
 MachineSetup full_queue_setup(const std::string& overflow) {
     return setup_of(with_settings(timed_job(), "hardware.queue_capacity=8 hardware.queue_overflow=" + overflow));
 }

@@ -6,8 +6,8 @@
 
 namespace tessera::testing {
 
-/// Puts an Inserted, which has `input` and `output`, behind the machine's Before: Displace Vertex or Lighting. One
-/// factory a machine, which it must outlive.
+/// Inserts an Inserted, which has `input` and `output`, behind the machine's Before: Displace Vertex or Lighting. One
+/// factory per machine, which it must outlive.
 template <class Before, class Inserted>
 class UnitBehind : public UnitFactory {
   public:

@@ -4,7 +4,7 @@
 #include "modules/version.h"
 #include "testbench/tests/support/program_runner.h"
 
-// The libraries in other projects: installed, and as a folder of theirs.
+// The libraries in other projects: installed, and as a subfolder.
 
 using namespace tessera;
 using Catch::Contains;
@@ -37,7 +37,7 @@ std::string require_success(const std::vector<std::string>& command, const fs::p
     return end.out;
 }
 
-/// Configures `source` in folder/build as this build was, but without the packages of the testbench.
+/// Configures `source` in folder/build like this build, but without the packages of the testbench.
 Arguments configuring(const fs::path& source, const Arguments& settings, const fs::path& prefix = {}) {
     Arguments command{"cmake",
                       "-S",
@@ -54,7 +54,7 @@ Arguments configuring(const fs::path& source, const Arguments& settings, const f
     return command + settings;
 }
 
-/// This build's installation, moved from where it was installed to.
+/// This build's installation, moved to another folder.
 fs::path install_in(const fs::path& folder) {
     const fs::path first = folder / "installed", moved = folder / "moved/elsewhere";
     require_success({"cmake", "--install", TESSERA_BUILD_FOLDER, "--prefix", first.string()}, folder);
@@ -63,7 +63,7 @@ fs::path install_in(const fs::path& folder) {
     return moved;
 }
 
-/// Builds and runs the programs in folder/build: what they print.
+/// Builds and runs the programs in folder/build; returns their output.
 std::string build_and_run(const fs::path& folder) {
     require_success({"cmake", "--build", "build", "-j2"}, folder);
     CHECK_THAT(require_success({"build/arithmetic"}, folder), Contains(version));
@@ -80,7 +80,7 @@ std::string without_line_breaks(const std::string& text) {
     return std::regex_replace(text, std::regex("\\s+"), " ");
 }
 
-/// Configuring must fail with these words.
+/// Requires that configuring fails with these words.
 void expect_refusal(const fs::path& folder, const Arguments& command, const std::string& words,
                     const Environment& environment = {}) {
     fs::remove_all(folder / "build");
@@ -90,7 +90,7 @@ void expect_refusal(const fs::path& folder, const Arguments& command, const std:
     CHECK_THAT(without_line_breaks(end.err), Contains(words));
 }
 
-/// Whether a header includes SystemC, itself or by another.
+/// Whether a header includes SystemC, directly or indirectly.
 bool includes_systemc(const fs::path& headers, const std::string& name) {
     const std::regex include("#include ([<\"])(.*)[>\"]");
     std::smatch match;
@@ -101,7 +101,7 @@ bool includes_systemc(const fs::path& headers, const std::string& name) {
     return false;
 }
 
-/// Blocks of this language in the text, line by line.
+/// Lines of the text's code blocks in this language.
 std::vector<std::string> code_in(const fs::path& markdown, const std::string& language) {
     std::vector<std::string> code;
     bool within = false;
@@ -144,7 +144,7 @@ TEST_CASE("the example takes the sources as a folder, and by FetchContent") {
     const Arguments settings =
         with_glm_and_fmt + Arguments{"-DCMAKE_CXX_FLAGS=" + strict, "-DTESSERA_SOURCE=" + source_folder().string(),
                                      "-DFETCHCONTENT_SOURCE_DIR_TESSERA=" + source_folder().string(),
-                                     // Both build tessera in the same folder: the second finds it built.
+                                     // both build tessera in the same folder: the second finds it built
                                      "-DFETCHCONTENT_BASE_DIR=build"};
     require_success(configuring(example, settings + Arguments{"-DTESSERA_BY=add_subdirectory"}), folder.path());
     const std::string printed = build_and_run(folder.path());
@@ -155,7 +155,7 @@ TEST_CASE("the example takes the sources as a folder, and by FetchContent") {
     CHECK_FALSE(fs::exists(folder.path() / "installed"));
 }
 
-// Every command of its page, one after another; in both modes the processor's program gets the same pictures.
+// Runs every command of the page in order; in both modes the processor's program receives the same pictures.
 TEST_CASE("the first platform, as its page has it built") {
     const TestFolder home;
     const std::vector<std::string> commands = code_in(platform / "README.md", "sh");
@@ -207,7 +207,7 @@ TEST_CASE("each installed header compiles alone") {
     const TestFolder folder;
     const fs::path headers = install_in(folder.path()) / "include/tessera";
     const std::string compile = TESSERA_COMPILER " -std=c++" TESSERA_STANDARD " " + strict + cci_headers + " ";
-    // SystemC takes most of the time: once, for all that include it.
+    // SystemC takes most of the compile time: include it once for all headers.
     write_all(folder.path() / "first.h", "#include <systemc>\n");
     std::string alone, after_systemc;
     unsigned count = 0;

@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Two triangles that share an edge, and one that was culled.
+/// Two triangles with a common edge, and one that was culled.
 EmittedMesh small_mesh() {
     EmittedMesh mesh;
     const auto corner = [](std::int32_t x, std::int32_t y, std::uint8_t generation) {
@@ -56,7 +56,7 @@ std::string replaced(std::string text, const std::string& what, const std::strin
     return text.replace(place, what.size(), by);
 }
 
-/// Reads the bytes as a file; the message if they are refused, which must name the file and what to do.
+/// Reads the bytes as a file; returns the message if they are refused, which must name the file and the remedy.
 std::string refusal(const TestFolder& here, const std::string& bytes) {
     write_all(here / "mesh.ply", bytes);
     try {

@@ -16,7 +16,7 @@ using Catch::Contains;
 
 namespace {
 
-/// What a job's files hold, as another program would have it.
+/// The content of a job's files, as another program would pass it.
 Scene scene_of(const Inputs& inputs) {
     Scene scene;
     for (const BaseVertex& v : inputs.mesh.vertices)
@@ -65,7 +65,7 @@ std::vector<unsigned char> tables_of(const PreparedScene& scene) {
 
 }  // namespace
 
-// The plane's and the sphere's normals are those that prepare() calculates.
+// The normals of the plane and the sphere are those that prepare() calculates.
 TEST_CASE("a scene of plain structs gives the registers, tables and triangles of the job") {
     for (const MeshSource source : {MeshSource::plane, MeshSource::cylinder}) {
         Job job;

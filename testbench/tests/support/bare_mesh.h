@@ -7,7 +7,7 @@
 
 namespace tessera::testing {
 
-/// What the datapath without SystemC makes of a machine's setup.
+/// Runs the datapath without SystemC on a machine's set-up.
 struct BareRun {
     explicit BareRun(const MachineSetup& setup) {
         BareRecursion bare(setup);
@@ -26,7 +26,7 @@ inline EmittedMesh bare_mesh(const MachineSetup& setup) {
 /// The same triangles, in any order.
 inline void expect_mesh(const EmittedMesh& mesh, const EmittedMesh& expected) {
     CHECK(mesh.triangles.size() == expected.triangles.size());
-    CHECK((keys(mesh) == keys(expected)));  // not to be printed
+    CHECK((keys(mesh) == keys(expected)));  // extra parentheses: nothing is printed
 }
 
 }  // namespace tessera::testing

@@ -9,8 +9,8 @@
 
 namespace tessera::testing {
 
-/// A table of Catch2 cases: each row is one of its own, named `prefix` and the row's `name`. For cases that cannot be
-/// sections of one: SystemC elaborates once a process, and ctest runs each case in a process of its own.
+/// A table of Catch2 cases: each row is a case named `prefix` and the row's `name`. For cases that cannot be sections
+/// of one: SystemC elaborates once per process, and ctest runs each case in its own process.
 template <class Row>
 class CaseTable {
   public:

@@ -9,8 +9,8 @@
 
 namespace tessera::testing {
 
-/// A job set up, simulated in its mode to its end, and checked: every decision against the golden model's, the mesh
-/// closed and the bare recursion's, nothing lost on the way. Its figures are for the test to look at.
+/// A job that is set up, simulated in its mode to its end, and checked: every decision against the golden model, the
+/// mesh for cracks and against the bare recursion, and no item lost. Tests may inspect its figures.
 struct CheckedRun {
     explicit CheckedRun(const Job& job) : CheckedRun(setup_of(job)) {}
     explicit CheckedRun(MachineSetup its_setup, UnitFactory* units = nullptr)
@@ -42,7 +42,7 @@ struct CheckedRun {
         CHECK(totals.lit + counts.culled == counts.finished);
     }
 
-    /// No triangle without area, none turned over, no seam of the texture open.
+    /// Requires no triangle without area, none turned over, and no open texture seam.
     void expect_closed_in_texture() const {
         CHECK(invariants.collapsed == 0);
         CHECK(invariants.turned_over == 0);

@@ -12,7 +12,7 @@
 
 namespace tessera {
 
-/// A mesh that no datapath made: cut by edge alone, displaced by a function of t.
+/// A mesh made without the datapath: cut by edges alone, displaced by a function of t.
 struct MeshMaker {
     std::function<bool(const datapath::Vertex&, const datapath::Vertex&)> split;
     std::function<std::int32_t(const datapath::TexCoord&)> height;

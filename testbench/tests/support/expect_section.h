@@ -11,8 +11,8 @@ namespace tessera::testing {
 
 enum class SectionEnd { of_document, empty_line };
 
-/// A document, named from the source folder, has this text below a heading. With the environment variable the test
-/// writes the text there instead.
+/// Requires that a document, named relative to the source folder, has this text below a heading. With the environment
+/// variable set the test writes the text there instead.
 inline void expect_section(const std::string& name, const std::string& heading, const std::string& text,
                            const std::string& variable, SectionEnd end = SectionEnd::of_document) {
     const std::filesystem::path path = source_folder() / name;
@@ -28,7 +28,7 @@ inline void expect_section(const std::string& name, const std::string& heading, 
         return;
     }
     INFO(path << " says something else; " << variable << "=1 has the test write it");
-    CHECK((document.substr(from, to - from) == text));  // not to be printed
+    CHECK((document.substr(from, to - from) == text));  // extra parentheses: nothing is printed
 }
 
 }  // namespace tessera::testing

@@ -14,7 +14,7 @@ inline Job with_settings(Job job, const std::string& settings) {
     return job;
 }
 
-/// Settings that give every unit's latency, interval or buffer a value; value(k) is that of the k-th, from 0.
+/// Settings that set every unit's latency, interval or buffer; value(k) is the value of the k-th, from 0.
 template <class Value>
 std::string every_unit(const std::string& figure, Value value) {
     std::ostringstream settings;

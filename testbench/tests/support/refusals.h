@@ -8,7 +8,7 @@
 
 namespace tessera::testing {
 
-/// The message of the InputError that the action ends in; empty where there is none.
+/// The message of the InputError that the action throws; empty if it throws none.
 template <class Action>
 std::string input_error_of(Action action) {
     try {
@@ -19,13 +19,13 @@ std::string input_error_of(Action action) {
     return "";
 }
 
-/// What a user wrote, and all that the message must say; nothing: it is accepted.
+/// A user's input, and what the message must contain; nothing: it is accepted.
 struct Refusal {
     std::string input;
     std::vector<std::string> says;
 };
 
-/// error_of(input): the message, empty where there is none.
+/// error_of(input): the message, empty if there is none.
 template <class ErrorOf>
 void expect_refusals(std::initializer_list<Refusal> rows, ErrorOf error_of) {
     for (const Refusal& row : rows) {

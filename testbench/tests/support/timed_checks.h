@@ -37,7 +37,7 @@ inline Job full_split_job(int side, int limit) {
     return job;
 }
 
-/// A plane of one quad that a constant map leaves whole.
+/// A plane of one quad over a constant map, on which no edge splits.
 inline Job one_quad_job() {
     Job job = timed_job();
     job.mesh.columns = job.mesh.rows = 1;
@@ -73,7 +73,7 @@ inline void require_cycles_add_up(const Unit& unit, std::uint64_t cycles) {
     CHECK(activity.item_cycles() <= activity.high_water_mark() * cycles);
 }
 
-/// Of a unit; the last item's may reach beyond the run's end.
+/// The longest interval of a unit; the last item's may extend beyond the run's end.
 inline std::uint64_t longest_interval(const Timing& t) {
     std::uint64_t longest = 1;
     for (const HeightTestKind& kind : height_test_kinds)
@@ -109,7 +109,7 @@ inline void require_conservation(const Simulation& simulation) {
     }
 }
 
-/// What Tessellation and the height test of a timed machine receive.
+/// The items that Tessellation and the height test of a timed machine receive.
 inline void require_timed_conservation(const Simulation& simulation, const HostedMachine& machine) {
     const Pipeline& p = machine.pipeline;
     const auto& made = p.tessellation.made_into();
@@ -168,7 +168,7 @@ struct KeptSetup {
     MachineSetup kept;
 };
 
-/// A simulation that has run to its end, checked like that. It keeps its setup.
+/// A simulation that has run to its end with these checks. It keeps its setup.
 struct TimedRun : private KeptSetup, Simulation {
     explicit TimedRun(MachineSetup its_setup, std::uint64_t cycles_without_progress = 0)
         : KeptSetup{std::move(its_setup)}, Simulation(kept, 1'000'000, cycles_without_progress) {
@@ -176,7 +176,7 @@ struct TimedRun : private KeptSetup, Simulation {
     }
 };
 
-/// In either mode, to its end.
+/// Runs to the end, in either mode.
 inline void run_to_the_end(Simulation& simulation) {
     if (simulation.setup.design.transport == Transport::non_blocking) {
         run_timed(simulation);

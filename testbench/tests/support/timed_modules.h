@@ -147,7 +147,7 @@ std::string error_of(Action action) {
     return {};
 }
 
-/// Writes a table's entries, row by row, past the clock.
+/// Writes a table's entries, row by row, bypassing the clock.
 inline void fill_table(MemoryPort& port, const datapath::TableLayout& table,
                        const std::vector<std::uint64_t>& entries) {
     for (std::size_t k = 0; k < entries.size(); ++k) {

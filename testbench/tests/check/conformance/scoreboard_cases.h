@@ -37,7 +37,7 @@ inline datapath::Formats bilinear(datapath::Formats formats) {
     return formats;
 }
 
-/// Defaults first, then narrow, wide and lopsided ones.
+/// Default formats first, then narrow, wide and unbalanced ones.
 inline std::vector<datapath::Formats> many_formats() {
     return {datapath::Formats{},
             make_formats(32, 31, 18, 16, 12, 16, 32, 8),
@@ -60,7 +60,7 @@ inline double real(Random& random, double low, double high) {
 
 inline glm::dvec3 unit_vector(Random& random) {
     for (;;) {
-        const glm::dvec3 v{real(random, -1, 1), real(random, -1, 1), real(random, -1, 1)};  // braces: in this order
+        const glm::dvec3 v{real(random, -1, 1), real(random, -1, 1), real(random, -1, 1)};  // braces fix the order
         const double length = glm::length(v);
         if (length > 0.1 && length < 1)
             return v / length;
@@ -74,14 +74,14 @@ inline datapath::Direction rounded(const glm::dvec3& v, const datapath::Format& 
     return {component(v.x), component(v.y), component(v.z)};
 }
 
-/// How nasty the operands are.
+/// How extreme the operands are.
 enum class Manner {
     tame,  ///< like a mesh in front of a camera: nothing saturates, neighbouring normals within about 30
            ///< degrees
     wild   ///< anything the formats hold
 };
 
-/// A design with map, view and everything that works on it.
+/// A design with its map and view, and the models that evaluate it.
 struct Case {
     MachineSetup setup;
     GoldenInputs inputs;
@@ -119,7 +119,7 @@ struct Case {
         return setup;
     }
 
-    /// A camera looking at the origin: from well outside (tame), or from anywhere.
+    /// A camera looking at the origin, from well outside (tame) or from anywhere (wild).
     static void make_view(Random& random, datapath::Registers& registers, Manner manner) {
         const int fraction = datapath::TransformParameters::matrix_fraction;
         const int position = registers.formats.position.fraction;
@@ -200,7 +200,7 @@ struct Case {
         return v;
     }
 
-    /// A complete pass of three related vertices; every second one a base triangle's first.
+    /// A complete pass of three related vertices; every second one is a base triangle's first pass.
     datapath::TrianglePass pass(Random& random) {
         datapath::Triangle triangle;
         datapath::Vertex before;

@@ -9,7 +9,7 @@
 
 namespace tessera::testing {
 
-/// A job's run as the program makes it, in functional mode, up to the set-up check.
+/// Runs a job as the program does, in functional mode, up to the set-up check.
 struct SetupRun {
     explicit SetupRun(const Job& job) : SetupRun(job, load_mesh(job), load_map(job)) {}
     SetupRun(const Job& job, const BaseMesh& its_mesh, const HeightMap& its_map)
@@ -28,7 +28,7 @@ struct SetupRun {
     }
     SetupResult check() { return check_setup(setup, golden, simulation); }
 
-    /// The verdict on another set-up, with the memories as they are.
+    /// Checks another set-up against the memories as they are, and requires that `name` is reported as wrong.
     void require_noticed(const MachineSetup& wrong, const std::string& name) {
         const SetupResult result = check_setup(wrong, golden, simulation);
         INFO(name << ": " << result.first_wrong);

@@ -15,8 +15,8 @@
 
 using namespace tessera;
 
-// The whole machine against the golden model, on the paper's inputs. One elaboration per process: run one case at a
-// time, as ctest does.
+// The whole machine against the golden model, on the paper's inputs. A process can elaborate only once: run one case at
+// a time, as ctest does.
 namespace {
 
 const std::filesystem::path jobs = source_folder() / "testbench/examples/jobs";

@@ -1,5 +1,5 @@
-// How often each test was the one that decided, and how many edges lie beside a texel's border. SystemC
-// elaborates once a process, so each case runs one simulation.
+// Counts how often each test alone decided, and how many edges lie beside a texel's border. SystemC elaborates once per
+// process, so each case runs one simulation.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -14,8 +14,8 @@ using Catch::Contains;
 
 namespace {
 
-/// A plane of one quad, 6 edges of two triangles, over noise: at thresholds of 0 the Normal Test and the Summed Height
-/// Test want every edge split, and nothing stops it but generation 1.
+/// A plane of one quad over noise: two triangles, 6 edges. With thresholds of 0 the Normal Test and the Summed Height
+/// Test ask to split every edge, and only generation 1 stops them.
 Job one_quad() {
     Job job;
     job.mode = Mode::functional;
@@ -53,7 +53,7 @@ void expect_stopped(const Decisions::Counts& c, std::uint64_t view, std::uint64_
     CHECK(c.stopped_by_several == several);
 }
 
-/// What the counters should say, counted over the golden model's evaluations of the edges that the machine decided.
+/// The expected counters, from the golden model's evaluations of the edges that the machine decided.
 class GoldenCount : public tlm::tlm_analysis_if<datapath::TrianglePass> {
   public:
     explicit GoldenCount(const MachineSetup& setup) : inputs_(setup), dequantise_(setup.registers.formats) {}
@@ -85,7 +85,7 @@ class GoldenCount : public tlm::tlm_analysis_if<datapath::TrianglePass> {
     Dequantise dequantise_;
 };
 
-/// A pass of which only texture coordinates are set: three ends, then the midpoints of edges 0-1, 1-2, 2-0.
+/// A pass with only its texture coordinates set: three ends, then the midpoints of edges 0-1, 1-2, 2-0.
 datapath::TrianglePass pass_at(const std::array<datapath::TexCoord, 6>& t) {
     datapath::TrianglePass pass;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -140,7 +140,7 @@ TEST_CASE("deciding: View Test and Generation Test stop 6 edges together") {
 }
 
 TEST_CASE("deciding: the Tex Coord Test alone stops all 96 edges of quads of one texel") {
-    // Midpoints lie in the texel of one end; the other end's normal is another's.
+    // Each midpoint lies in the texel of one end; the normal at the other end is that of another texel.
     Job job = one_quad();
     job.mesh.columns = job.mesh.rows = job.map.width = job.map.height = 4;
     job.map.address_u = job.map.address_v = Addressing::repeat;
@@ -170,7 +170,7 @@ TEST_CASE("deciding: the counters are those of the golden model's evaluations") 
     CHECK(golden.counts.split_by_highlight == counts.split_by_highlight);
     expect_stopped(golden.counts, counts.stopped_by_view_alone, counts.stopped_by_tex_coord_alone,
                    counts.stopped_by_generation_alone, counts.stopped_by_several);
-    // The job is worth something only if every counter counts.
+    // The job is a useful test only if no counter stays zero.
     CHECK(counts.split_by_normal > 0);
     CHECK(counts.split_by_summed_height > 0);
     CHECK(counts.split_by_both > 0);
@@ -194,7 +194,7 @@ TEST_CASE("texel borders: edges with an end or a midpoint one LSB below a border
     CHECK(below({on, above, inside, on, above, inside}) == 0);
     CHECK(below({on, on, on, left, on, on}) == 1);
     CHECK(below({on, on, on, on, under, on}) == 1);
-    CHECK(below({corner, on, on, on, on, on}) == 2);  // an end of two edges
+    CHECK(below({corner, on, on, on, on, on}) == 2);  // this vertex is an end of two edges
     CHECK(below({corner, on, on, left, on, on}) == 2);
     CHECK(below({on, on, on, two_below, on, on}) == 0);
 
@@ -211,7 +211,7 @@ TEST_CASE("texel borders: many are more than a hundredth and twice what chance g
     CHECK_FALSE(TexelBorderCount{12, 0, 0}.many());
     CHECK_FALSE(TexelBorderCount{12, 1000, 10}.many());
     CHECK(TexelBorderCount{12, 1000, 11}.many());
-    // 6 in 2^6: 9.4 %, twice that 18.8 %
+    // 6 values of 2^6 are 9.4 %, twice that 18.8 %
     CHECK_FALSE(TexelBorderCount{6, 1000, 187}.many());
     CHECK(TexelBorderCount{6, 1000, 188}.many());
 }
@@ -225,17 +225,17 @@ TEST_CASE("texel borders: the warning names the next map size and number of quad
                              Contains("map.width = 264 (a multiple of 3 quads), or mesh.columns = 4") &&
                              Contains("map.height = 264 (a multiple of 3 quads), or mesh.rows = 4"));
     job.mesh.columns = 7;
-    job.mesh.rows = 8;  // divides
+    job.mesh.rows = 8;  // divides the map's height
     const std::string one_axis = texel_borders_warning(many, job, 100, 100);
     CHECK_THAT(one_axis, Contains("map.width = 112 (a multiple of 7 quads), or mesh.columns = 8") && !Contains("rows"));
     job.mesh = {};
     for (const MeshSource source : {MeshSource::cylinder, MeshSource::sphere}) {
-        job.mesh.source = source;  // 32 quads a side, whatever the map
+        job.mesh.source = source;  // 32 quads a side for every map
         CHECK(texel_borders_warning(many, job, 264, 100).empty());
     }
-    job.mesh.columns = 30;  // the next multiple of 240, 4320, is more than a map has
+    job.mesh.columns = 30;  // the next multiple of 240, 4320, exceeds the largest map
     CHECK_THAT(texel_borders_warning(many, job, 4096, 100), Contains("map.width = 4080 (a multiple of 30 quads)"));
-    job.mesh.columns = 600;  // as is 4800; no more quads than 2048 either, and 512 divide the map
+    job.mesh.columns = 600;  // so does 4800; the limit is 2048 quads, and 512 divides the map
     job.formats.texture_fraction = 0;
     job.mesh.rows = 1;
     CHECK_THAT(texel_borders_warning(many, job, 512, 100),
@@ -243,11 +243,11 @@ TEST_CASE("texel borders: the warning names the next map size and number of quad
     job.formats.texture_fraction = 12;
     job.mesh.columns = 7;
     job.mesh.rows = 8;
-    job.map.source = MapSource::file;  // has its size
+    job.map.source = MapSource::file;  // a file has a fixed size
     CHECK_THAT(texel_borders_warning(many, job, 100, 100),
                Contains("Use mesh.columns = 8 for a map of 100 texels") && !Contains("map.width"));
-    CHECK(texel_borders_warning(many, job, 700, 100).empty());  // quads divide both sides
-    job.mesh.source = MeshSource::file;                         // has its coordinates, decimals
+    CHECK(texel_borders_warning(many, job, 700, 100).empty());  // the quads divide both sides
+    job.mesh.source = MeshSource::file;                         // a file has fixed coordinates, in decimals
     CHECK(texel_borders_warning({12, 1000, 200}, job, 100, 50).empty());
     CHECK_THAT(texel_borders_warning({12, 1000, 201}, job, 100, 50), Contains("multiples of 1/100 and 1/50"));
 }

@@ -57,7 +57,7 @@ TEST_CASE("the closest point of a triangle, by region") {
 
 TEST_CASE("the closest point of a needle is that of a search along it") {
     Random random(23);
-    // The distance to the line across at t is convex in t: thirds close in on the least.
+    // The distance to the segment across at t is convex in t, so ternary search finds the minimum.
     const auto search = [](const std::array<glm::dvec3, 3>& t, const glm::dvec3& p) {
         const auto distance = [&](double at) {
             const glm::dvec3 from = glm::mix(t[0], t[1], at), side = glm::mix(t[0], t[2], at) - from;
@@ -97,7 +97,7 @@ TEST_CASE("the closest point of a needle is that of a search along it") {
 
 TEST_CASE("distances through the tree of boxes are those of a search through all triangles") {
     Random random(21);
-    // A large offset leaves single precision little; the distances must not notice.
+    // A large offset costs single precision; the distances must not change.
     for (const double offset : {0.0, 1e4, 1e6}) {
         std::vector<TriangleSoup::Corners> from, to;
         for (int k = 0; k < 200; ++k) {
@@ -205,14 +205,14 @@ TEST_CASE("distances to long thin triangles, and to such without an area, are th
         std::vector<NearestTriangle::Found> within;
         for (const std::size_t most : {300U, 100'000U}) {
             REQUIRE(search.within({0, 0, 0}, 10, most, within));
-            CHECK(within.size() == 300);  // each once, in however many parts
+            CHECK(within.size() == 300);  // each triangle once, whether searched in one or several parts
         }
         CHECK_FALSE(search.within({0, 0, 0}, 10, 299, within));
     }
 }
 
 TEST_CASE("a sample of the points says how many it is, and what that tells of the rest") {
-    // Two points missed a part q with the probability (1 - q)^2; that is 1/4 for q = 1/2.
+    // Two points miss a fraction q with probability (1 - q)^2, which is 1/4 for q = 1/2.
     CHECK(SurfaceDistance{10, 2, 0, 0}.unseen(0.75) == Approx(0.5));
     CHECK(SurfaceDistance{10'000'000, 6904, 0, 0}.unseen(0.999) == Approx(0.0010000).epsilon(1e-4));
     CHECK(SurfaceDistance{10, 10, 0, 0}.unseen(0.999) == 0);
@@ -228,7 +228,7 @@ TEST_CASE("a sample of the points says how many it is, and what that tells of th
     CHECK(all.measured == 12000);
     const SurfaceDistance some = distance_between(from, to, 120'000);
     CHECK(some.points == 12000);
-    CHECK(some.measured == 2048);  // of some 3,000 that 120,000 looks pay for
+    CHECK(some.measured == 2048);  // of some 3,000 that a budget of 120,000 looks allows
     CHECK(some.max <= all.max);
     CHECK(some.rms == Approx(all.rms).epsilon(0.1));
     CHECK(some.unseen(0.999) == Approx(0.00337).epsilon(0.01));
@@ -265,14 +265,14 @@ TEST_CASE("a surface shifted by a known distance is measured as that") {
     other.resize(other.size() / 2);
     const SurfaceDistance half = distance_between(one, other, most_looks, std::ldexp(5.01, -16));
     CHECK(half.farther_percent() > 40);
-    CHECK(half.farther_percent() < 50);  // the vertices along the border are near
+    CHECK(half.farther_percent() < 50);  // vertices along the border are near the other half
 }
 
 TEST_CASE("hardware and golden run to nearly the same surface") {
     Job job;
     job.tests.normal_threshold = 0.2;
-    // 96 texels in three columns: base texture coordinates are whole, so midpoints are exact in both for
-    // twelve generations and the two meshes differ in rounding of positions only, but for flips of NT.
+    // 96 texels in three columns: base texture coordinates are whole, so midpoints are exact in both models for twelve
+    // generations. Apart from flips of NT, the two meshes differ only in the rounding of positions.
     Case c = donut(job, 96);
     const EmittedMesh mesh = hardware_mesh(c);
     const EndToEndResult result = compare_end_to_end(c.setup, c.inputs, mesh);
@@ -336,7 +336,7 @@ TEST_CASE("golden's own run passes within what is allowed, either way") {
         CHECK(result.passed());
         (result.*way).rms_model = 0.51;
         CHECK_FALSE(result.passed());
-        // A hundredth of the points may lie 3 off; then 0.3 of the RMS is theirs.
+        // One percent of the points may lie 3 away, which adds 0.3 to the allowed RMS.
         result.allowed.triangles = 1;
         result.allowed.displacement = 3;
         (result.*way).farther = 1;

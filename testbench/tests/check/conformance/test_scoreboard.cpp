@@ -17,7 +17,7 @@ using namespace tessera::testing;
 
 namespace {
 
-/// Next to the near plane w may be the largest of its format already: what lies beyond comes round at the other end.
+/// Near the near plane w may already be the largest value of its format: a larger one wraps around.
 template <class Value>
 void move_around(Value& value, int by) {
     value = static_cast<Value>(std::int64_t{value} + by);
@@ -54,7 +54,7 @@ TEST_CASE("the datapath conforms on random edges of many formats") {
             }
         }
     }
-    // The cases are worth something only if they reach these corners.
+    // The cases are a useful test only if they reach these corners.
     CHECK(flips > 100);
     CHECK(behind > 1000);
     CHECK(diagonals > 1000);
@@ -66,7 +66,7 @@ TEST_CASE("no bound is more than four times the largest error seen") {
          {datapath::Formats{}, make_formats(32, 31, 18, 16, 12, 16, 32, 20), make_formats(24, 12, 12, 10, 8, 12, 24, 8),
           make_formats(16, 8, 10, 8, 4, 8, 20, 8), bilinear(datapath::Formats{}),
           bilinear(make_formats(24, 12, 12, 10, 8, 12, 24, 8))}) {
-        // One design at a time: a large bound in one must not be excused by a large error in another.
+        // One design at a time: a large error in one must not hide a loose bound in another.
         std::map<std::string, double> loosest;
         for (int design = 0; design < 10; ++design) {
             Case c(random, formats, Manner::tame);
@@ -144,12 +144,12 @@ TEST_CASE("a value beyond its bound is caught in every field") {
             const ConformanceResult before = check(c, good);
             REQUIRE(before.mismatches == 0);
             for (const Field& field : fields) {
-                // The bound is that of the pass's worst component, so this is one LSB beyond it or more; a
-                // midpoint has a single right value.
+                // The bound is that of the pass's worst component, so this deviation exceeds it by at least one LSB. A
+                // midpoint has a single correct value.
                 const double bound = quantity(before, field.quantity).max_bound;
                 const bool single = std::string(field.quantity) == "P_ij" || std::string(field.quantity) == "t_ij" ||
                                     std::string(field.quantity) == "(N_i+N_j)/2";
-                // Next to the near plane a screen position's bound may reach as far as its format: nothing lies beyond.
+                // Near the near plane a screen position's bound may cover its whole format: no value exceeds it.
                 if (bound > 1e6) {
                     ++unbounded;
                     continue;
@@ -200,7 +200,7 @@ TEST_CASE("a flipped decision is caught") {
             CHECK(test(check(c, other_side), "in_front").mismatches == 1);
         }
     }
-    // A bound of a few LSB in a range of 2^14 excuses next to nothing.
+    // A bound of a few LSB in a range of 2^14 excuses almost no flip.
     CHECK(normal_caught + normal_allowed == 300);
     CHECK(normal_allowed <= 2);
 }
@@ -227,8 +227,7 @@ TEST_CASE("an allowed flip of NT excuses the split that follows from it and no o
             CHECK(result.flipped_edges == 1);
             CHECK(result.passed(34));
             CHECK_FALSE(result.passed(33));
-            // All three the other way round: now every split contradicts its edge's bits, on the flipped edge
-            // too.
+            // With all three inverted every split contradicts its edge's bits, on the flipped edge too.
             datapath::TrianglePass bad = pass;
             bad.split = static_cast<std::uint8_t>(bad.split ^ 7);
             CHECK(test(check(plain, bad), "split").mismatches == 3);
@@ -384,7 +383,7 @@ TEST_CASE("broken arithmetic between texels is caught") {
     Case c(setup, Manner::tame);
     const datapath::Registers& registers = c.setup.registers;
     const datapath::Formats& formats = registers.formats;
-    /// P'_ij with the code that code_at(t, the code) makes.
+    /// Counts P'_ij outside their bounds when displaced by the code that code_at(t) returns.
     const auto displaced_with = [&](const auto& code_at) {
         std::vector<datapath::TrianglePass> passes;
         for (int n = 0; n < 200; ++n) {
@@ -408,7 +407,7 @@ TEST_CASE("broken arithmetic between texels is caught") {
         return datapath::interpolate(codes, datapath::bilinear_weights(t, formats), fraction, formats);
     };
     CHECK(displaced_with([&](datapath::TexCoord t) { return static_cast<std::uint32_t>(code_at(t, 8)); }) == 0);
-    // Rounded down; to whole codes; a weight one LSB off.
+    // Wrong codes: rounded down, rounded to whole codes, interpolated with a weight one LSB off.
     CHECK(displaced_with([&](datapath::TexCoord t) { return static_cast<std::uint32_t>(code_at(t, 24) >> 16); }) > 100);
     CHECK(displaced_with([&](datapath::TexCoord t) { return static_cast<std::uint32_t>(code_at(t, 0) << 8); }) > 100);
     CHECK(displaced_with([&](datapath::TexCoord t) {
@@ -463,7 +462,7 @@ TEST_CASE("near the near plane the two may differ only within rounding of w") {
     std::uint64_t flips = 0, flipped_edges = 0, in_front = 0, behind = 0;
     for (int design = 0; design < 400; ++design) {
         MachineSetup setup = Case::make_setup(random, make_formats(20, 8, 8, 6, 8, 12, 24, 8), Manner::tame);
-        // Looking along +x from the origin, the near plane amid the midpoints.
+        // Looks along +x from the origin; the near plane lies among the midpoints.
         const std::int64_t one = std::int64_t{1} << datapath::TransformParameters::matrix_fraction;
         const std::int32_t near = 5000;
         setup.registers.transform.row_w = {one, 0, 0, 0};
@@ -483,7 +482,7 @@ TEST_CASE("near the near plane the two may differ only within rounding of w") {
             INFO(result.first_mismatch);
             REQUIRE(result.mismatches == 0);
             flips += test(result, "in_front").allowed_flips;
-            // Without the base vertices every flip is an edge's, and counts as one.
+            // Without the base vertices every flip belongs to an edge, and is counted once.
             pass.new_vertices = 0;
             const ConformanceResult edges = check(c, pass);
             CHECK(edges.flipped_edges >= test(edges, "in_front").allowed_flips);
@@ -546,7 +545,7 @@ TEST_CASE("normals and tangents of length zero stay zero on both sides") {
             INFO(result.first_mismatch);
             CHECK(result.mismatches == 0);
         }
-        // What is zero on both sides must be exactly that.
+        // A value that is zero in both models must be exactly zero.
         datapath::TrianglePass bad = passes[0];
         bad.edges[0].normal.x = 1;
         CHECK(quantity(check(c, bad), "N_ij").outside == 1);

@@ -11,14 +11,14 @@
 #include "testbench/check/conformance/scoreboard.h"
 #include "testbench/tests/check/conformance/scoreboard_cases.h"
 
-// The Curvature Test's and the Mipmap Test's decisions are golden's, to the last step of the threshold.
+// The decisions of the Curvature Test and the Mipmap Test equal golden's, to the last step of the threshold.
 
 using namespace tessera;
 using namespace tessera::testing;
 
 namespace {
 
-/// A table of random bits; the Curvature Test alone.
+/// A table of random bits, with the Curvature Test alone.
 MachineSetup random_setup(Random& random, const datapath::Formats& formats) {
     MachineSetup setup = Case::make_setup(random, formats, Manner::tame);
     datapath::Registers& registers = setup.registers;
@@ -33,7 +33,7 @@ MachineSetup random_setup(Random& random, const datapath::Formats& formats) {
     return setup;
 }
 
-/// Blocks as the map has them; the Mipmap Test alone.
+/// Levels computed from the map, with the Mipmap Test alone.
 MachineSetup mipmap_setup(Random& random, const datapath::Formats& formats) {
     MachineSetup setup = Case::make_setup(random, formats, Manner::tame);
     setup.registers.formats.height_test = datapath::HeightTest::mipmap;
@@ -74,7 +74,7 @@ std::uint64_t measure(const MachineSetup& setup, const datapath::TrianglePass& p
                    pass.edges[static_cast<std::size_t>(k)].texture);
 }
 
-/// The pass as the hardware decides it by this setup; flipped: edges whose test of heights is the other way round.
+/// The pass as the hardware decides it for this setup; `flipped` selects edges whose height test is inverted.
 datapath::TrianglePass decided(const MachineSetup& setup, datapath::TrianglePass pass, unsigned flipped = 0) {
     pass.split = 0;
     for (unsigned k = 0; k < 3; ++k) {

@@ -15,7 +15,7 @@ using namespace tessera::testing;
 
 TEST_CASE("another diagonal than golden's is caught for each pair of split edges") {
     using datapath::Triangulation;
-    // By the pair of split edges: the quadrilateral they leave, of vertices 0 to 2 and the midpoints 3 + k of edges k.
+    // For each pair of split edges the remaining quadrilateral, of vertices 0 to 2 and midpoints 3 + k of edges k.
     const std::map<unsigned, std::array<unsigned, 4>> quadrilaterals{
         {3, {0, 3, 4, 2}}, {5, {3, 1, 2, 5}}, {6, {0, 1, 4, 5}}};
     Random random(8);
@@ -51,7 +51,7 @@ TEST_CASE("another diagonal than golden's is caught for each pair of split edges
                        std::abs(std::int64_t{from.z} - to.z);
             };
             const auto& q = found->second;
-            // Shorter by more than a 64th.
+            // The second diagonal only if it is shorter by more than 1/64.
             const bool second = 64 * length(q[1], q[3]) < 63 * length(q[0], q[2]);
             ++seen[{pass.split, second}];
             INFO("split " << unsigned{pass.split} << ", second diagonal " << second);
@@ -87,7 +87,7 @@ TEST_CASE("each wrong decision of each edge is one mismatch of its name") {
                 INFO(name);
                 const ConformanceResult result = check(c, bad);
                 INFO(result.first_mismatch);
-                // Within a bound of its threshold nothing is wrong.
+                // A flip within the bound around the threshold is no mismatch.
                 if (test(before, name).allowed_flips + test(result, name).allowed_flips > 0) {
                     ++excused;
                     return;
@@ -142,7 +142,7 @@ TEST_CASE("a final edge: nothing of it is compared but that golden does not spli
             pass.new_vertices = 0;
             const datapath::EdgeTests tested = pass.edges[0];
             const bool splits = (pass.split & 1) != 0;
-            // The others' decision would change the diagonal.
+            // Skipped: with other splits, leaving this one out would also change the diagonal.
             if (splits && ((tested.tests & datapath::summed_height_bit) == 0 || pass.split != 1))
                 continue;
             pass.triangle.final_edges = 1;
@@ -154,7 +154,7 @@ TEST_CASE("a final edge: nothing of it is compared but that golden does not spli
             const ConformanceResult result = scoreboard.result();
             INFO(result.first_mismatch);
             CHECK(result.edges == 2);
-            CHECK(result.mismatches == (splits ? 1 : 0));  // the Summed Height Test alone would split it, exactly
+            CHECK(result.mismatches == (splits ? 1 : 0));  // only the Summed Height Test would split it; it is exact
             CHECK(test(result, "split").mismatches == (splits ? 1 : 0));
             ++(splits ? split : whole);
         }
@@ -192,7 +192,7 @@ TEST_CASE("a test that was not evaluated is not compared, and what follows from 
             const unsigned tests = edge.tests;
             if ((tests & datapath::gating_tests) == datapath::gating_tests)
                 continue;
-            // As Sequence Tests does: the gates decide, the two others are left out.
+            // As Sequence Tests does: the gating tests decide, the two others are not evaluated.
             edge = {};
             edge.texture = pass.new_vertex[0].texture;
             edge.evaluated = datapath::gating_tests;

@@ -15,7 +15,7 @@ TEST_CASE("the figures of a quantity, by hand") {
         v.position = {0, 0, 0};
     triangle.vertices[1].position.x = 1;
     datapath::TrianglePass pass = c.evaluate(triangle, true);
-    // Midpoints of 0 and 1 are rounded down to 0 on edges 0 and 1: -1/2, and the bound is just that. All
+    // On edges 0 and 1 the midpoints of 0 and 1 are rounded down to 0: an error of -1/2, which equals the bound. All
     // others are exact.
     ConformanceResult result = check(c, pass);
     CHECK(result.passes == 1);
@@ -30,7 +30,7 @@ TEST_CASE("the figures of a quantity, by hand") {
         CHECK(q.max_bound == 0.5);
         CHECK(q.worst_ratio == 1);
     }
-    // Nothing may lie above golden: 3 LSB count as three bounds. Below, half an LSB may: 1 LSB is two bounds.
+    // Above golden no error is allowed: 3 LSB are three bounds. Below, half an LSB is: 1 LSB is two bounds.
     pass.new_vertex[2].position.x = 3;
     pass.new_vertex[2].position.y = -1;
     result = check(c, pass);

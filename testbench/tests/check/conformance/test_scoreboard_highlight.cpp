@@ -6,7 +6,7 @@
 #include "testbench/check/conformance/error_bounds.h"
 #include "testbench/tests/check/conformance/scoreboard_cases.h"
 
-// The scoreboard on the Highlight Test: what it lets pass, what it catches, and the bound it goes by.
+// The scoreboard on the Highlight Test: what it allows, what it detects, and the bound it uses.
 
 using namespace tessera;
 using namespace tessera::testing;
@@ -51,7 +51,7 @@ TEST_CASE("Highlight Test: the datapath conforms on random edges of many formats
             }
         }
     }
-    CHECK(flips > 50);  // the narrow formats; else the bound is not needed
+    CHECK(flips > 50);  // from the narrow formats; with none the bound would be unnecessary
     CHECK(flips < agreed / 20);
 }
 
@@ -83,7 +83,7 @@ TEST_CASE("Highlight Test: an end's own product is exact, no flip is allowed the
             return std::int64_t{n.x} * tests.half_vector[0] + std::int64_t{n.y} * tests.half_vector[1] +
                    std::int64_t{n.z} * tests.half_vector[2];
         };
-        // the border one step of the product below the nearer end, which is nearer than the midpoint
+        // the limit lies one step of the product below the end with the larger product, which exceeds the midpoint's
         const std::int64_t end = std::max(product(pass.triangle.vertices[0].displaced_normal),
                                           product(pass.triangle.vertices[1].displaced_normal));
         if (end - product(pass.edges[0].displaced_normal) < std::int64_t{1} << 20)
@@ -120,7 +120,7 @@ TEST_CASE("Highlight Test: the split decision follows an allowed flip, and only 
             continue;
         ++followed;
         CHECK(test(check(alone, good), "split").mismatches == 0);
-        // a bit that flipped without its split, and its split with it
+        // a flipped bit without its split, then together with its split
         CHECK(test(check(alone, flipped), "split").mismatches == 1);
         datapath::TrianglePass whole = flipped;
         whole.split = static_cast<std::uint8_t>(whole.split ^ 4);

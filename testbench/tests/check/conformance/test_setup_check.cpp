@@ -1,4 +1,4 @@
-// What the host set, judged: nothing is wrong with the default job, and one wrong entry anywhere is noticed.
+// The check of the host's set-up: it finds no error in the default job, and detects one wrong entry anywhere.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -29,11 +29,11 @@ using testing::SetupRun;
 namespace {
 
 struct Mistake {
-    std::string name;  // as the check names it
+    std::string name;  // as the check reports it
     std::function<void(MachineSetup&)> make;
 };
 
-/// One mistake for each register of the default job, by one LSB where it is a number.
+/// One mistake for each register of the default job; numbers are off by one LSB.
 std::vector<Mistake> register_mistakes() {
     using datapath::AddressMode;
     std::vector<Mistake> list;
@@ -125,7 +125,7 @@ std::vector<Mistake> register_mistakes() {
         "displacement.bias", [](auto& r) -> auto& { return r.displacement.bias; });
 
     for (std::size_t k = 0; k < 4; ++k) {
-        // The fourth column is finer than a double here.
+        // The fourth column has more bits than a double.
         const std::int64_t step = k < 3 ? 1 : 4096;
         const auto row = [&](const std::string& name, auto member) {
             for (const std::int64_t error : {step, -step})
@@ -160,7 +160,7 @@ std::vector<Mistake> register_mistakes() {
     return list;
 }
 
-/// One mistake for each field of a vertex, by one LSB.
+/// One mistake for each field of a vertex; numbers are off by one LSB.
 std::vector<Mistake> vertex_mistakes() {
     std::vector<Mistake> list;
     const auto add = [&](const std::string& field, auto member) {
@@ -273,7 +273,7 @@ struct OtherTest {
     std::string settings;
 };
 
-/// The first value of a register, up or down by one.
+/// Changes the first value of a register by `by`.
 void change(datapath::Registers& registers, const std::string& name, int by) {
     datapath::describe_registers(registers, [&](const datapath::Register& field, auto& value, auto&...) {
         using Value = std::decay_t<decltype(value)>;
@@ -418,7 +418,7 @@ TEST_CASE("the set-up of a job of other formats, with bias, highlight and a map 
     job.formats.normal_bits = 12;
     job.formats.normal_fraction = 10;
     job.formats.displacement_bits = 9;
-    job.formats.summed_height_bits = 16;  // sums of the whole map wrap
+    job.formats.summed_height_bits = 16;  // sums over the whole map wrap
     job.formats.texture_fraction = 5;
     job.hardware.culling = Culling::back;
     job.hardware.triangulation = Triangulation::second;
@@ -436,7 +436,7 @@ TEST_CASE("the set-up of a job of other formats, with bias, highlight and a map 
     wrong = run.setup;
     ++wrong.registers.tests.highlight_normal_threshold;
     run.require_noticed(wrong, "tests.highlight_normal_threshold");
-    // A whole period is the host's own to add, but not to one corner alone.
+    // The host may shift a triangle by whole periods, but not a single corner.
     wrong = run.setup;
     const std::uint32_t period = 40U << 5;
     for (datapath::Vertex& vertex : wrong.base_triangles[3].vertices)
@@ -453,7 +453,7 @@ TEST_CASE("a base triangle that collapses in the formats is left out, any other 
     job.formats.texture_fraction = 0;
     job.tests.generation_limit = 1;
     BaseMesh mesh = load_mesh(job);
-    // A sliver, much less than an LSB wide, on the third triangle's edge.
+    // A sliver, much narrower than an LSB, on the third triangle's edge.
     const auto corners = mesh.triangles[2];
     BaseVertex moved = mesh.vertices[corners[0]];
     moved.position.x += 1e-9;
@@ -498,7 +498,7 @@ TEST_CASE("golden's own run is judged: by its triangles, by the surfaces' distan
     const EndToEndResult right = compare(mesh, 1);
     CHECK(right.passed());
     CHECK(right.rms_model() < 1e-3);
-    // Heights are -0.2 to 0.3, normals exact, four generations: (4 / 2 + 2) LSB of the position.
+    // Heights from -0.2 to 0.3, exact normals, four generations: (4 / 2 + 2) LSB of the position.
     REQUIRE(right.golden_largest_generation == 4);
     const double rounding = std::sqrt(3.0) * 4 * std::ldexp(1.0, -16) / run.setup.model_scale.scale;
     CHECK(right.allowed.triangles == 1);
@@ -525,7 +525,7 @@ TEST_CASE("golden's own run is judged: by its triangles, by the surfaces' distan
     fewer.triangles.resize(fewer.triangles.size() * 97 / 100);
     CHECK(failed(compare(fewer, 1)));
 
-    // By 10 LSB, of which rounding explains 6.9; less across the slopes.
+    // Lifted by 10 LSB, of which rounding explains 6.9; on slopes the distance is less.
     EmittedMesh lifted = mesh;
     for (EmittedTriangle& triangle : lifted.triangles)
         for (auto& corner : triangle.corners)
@@ -536,7 +536,7 @@ TEST_CASE("golden's own run is judged: by its triangles, by the surfaces' distan
     CHECK(off.rms_model() < 1e-3);
     CHECK(failed(off));
 
-    // A few triangles, farther out than any displacement puts them.
+    // A few triangles, farther away than any displacement puts them.
     EmittedMesh thrown = mesh;
     for (std::size_t k = 0; k < thrown.triangles.size(); k += 400)
         thrown.triangles[k].corners[0].displaced.z += 6 * run.setup.registers.displacement.scale;
@@ -544,7 +544,7 @@ TEST_CASE("golden's own run is judged: by its triangles, by the surfaces' distan
     CHECK(spikes.farther() < 1);
     CHECK(failed(spikes));
 
-    // The mesh bounds golden's run; a run stopped early, on any number of threads, is made again up to there.
+    // The mesh's size limits golden's run; one stopped early is repeated up to there, on any number of threads.
     mesh.triangles.resize(10);
     const EndToEndResult stopped = compare(mesh, 1000);
     CHECK(stopped.golden_triangles < 1040);
@@ -582,6 +582,6 @@ TEST_CASE("on a cylinder rounding moves normals, too, and they turn") {
     REQUIRE(result.golden_largest_generation == 4);
     CHECK(result.allowed.rounding == Approx(std::sqrt(3.0) * (4 * std::ldexp(1.0, -16) / run.setup.model_scale.scale +
                                                               10 * std::ldexp(1.0, -14) * 0.3)));
-    // Normals of neighbours are 45 degrees apart: 2 sin 22.5.
+    // Neighbouring normals are 45 degrees apart: 2 sin 22.5.
     CHECK(result.allowed.displacement == Approx(0.5 + 0.3 * 0.765366865));
 }

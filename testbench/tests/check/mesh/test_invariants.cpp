@@ -12,14 +12,14 @@
 #include "testbench/machine/bare_recursion.h"
 #include "testbench/machine/inputs.h"
 
-/// What is emitted against what should be. That the datapath's own mesh is closed: test_lineage.cpp.
+/// The emitted mesh against the expected one. test_lineage.cpp tests that the datapath's own mesh is closed.
 namespace tessera {
 namespace {
 
 using Corner = EmittedTriangle::Corner;
 using Expected = std::vector<std::pair<std::string, std::uint64_t>>;
 
-/// Everything that must be zero but for the figures given with their values; what is a fact is not looked at.
+/// Requires that every figure is zero except those given with their values; facts are ignored.
 void require_only(const InvariantResult& result, const Expected& expected) {
     INFO(result.first_violation);
     for (const InvariantFigure& figure : invariant_figures(result)) {
@@ -33,7 +33,7 @@ void require_only(const InvariantResult& result, const Expected& expected) {
     CHECK(result.first_violation.empty() == result.passed());
 }
 
-/// The plane over the whole map, 2 x 2 quads of base triangles, and what the datapath makes of it.
+/// A plane of 2 x 2 quads of base triangles over the whole map, and its mesh from the datapath.
 struct Plane {
     MachineSetup setup = make();
     EmittedMesh mesh;
@@ -214,11 +214,11 @@ TEST_CASE("the check ends where the datapath's recursion does not") {
     Plane plane;
     datapath::TestParameters& tests = plane.setup.registers.tests;
     tests.generation_test = tests.tex_coord_test = false;
-    tests.normal_threshold = 0;  // every edge across a border of the noise's texels splits
+    tests.normal_threshold = 0;  // every edge that crosses a border of the noise's texels splits
     const InvariantResult result = plane.check();
     CHECK(result.edges > 3'000'000);
     CHECK(result.edges <= 24 * result.triangles + 3'000'003);
-    CHECK(result.cracks == 0);  // not known
+    CHECK(result.cracks == 0);  // not determined
     CHECK(result.unfinished == 1);
     CHECK(result.violations() == 1 + result.wrong_triangles() + result.generation_violations);
     CHECK(result.missing_triangles > 0);

@@ -11,7 +11,7 @@
 #include "testbench/machine/bare_recursion.h"
 #include "testbench/machine/inputs.h"
 
-/// The check by descent, with the datapath as it is, on base meshes of all kinds, and with one that is broken.
+/// The check by descent: with the datapath as it is, on base meshes of all kinds, and with a faulty one.
 namespace tessera {
 namespace {
 
@@ -50,7 +50,7 @@ InvariantResult check(const MachineSetup& setup) {
     return lineage.finish();
 }
 
-/// What is open, in one number each.
+/// Requires these counts of cracks, T-vertices and inconsistent vertices.
 void require_faults(const InvariantResult& result, std::uint64_t cracks, std::uint64_t t_vertices,
                     std::uint64_t unlike_vertices) {
     INFO(result.first_violation);
@@ -60,13 +60,13 @@ void require_faults(const InvariantResult& result, std::uint64_t cracks, std::ui
     CHECK(result.first_violation.empty() == (cracks + t_vertices + unlike_vertices == 0));
 }
 
-/// A datapath that does something else to one of its passes, or with one of the children it makes.
+/// A faulty datapath, which alters one of its passes or one of the children it makes.
 struct Broken {
     using Note = Lineage::Note;
     Lineage& lineage;
-    /// Of each pass, by number: what the check sees of it.
+    /// Called for each pass with its number; forwards what the check sees.
     std::function<void(Broken&, std::size_t, const TrianglePass&, const Note&)> pass;
-    /// Of each child, by number: the corners it gets.
+    /// Called for each child with its number; returns its corners.
     std::function<std::array<std::uint8_t, 3>(std::size_t, std::array<std::uint8_t, 3>)> corners;
     std::size_t passes = 0, children = 0;
 
@@ -83,7 +83,7 @@ struct Broken {
     void finished(const Triangle&, bool) {}
 
     void forward(const TrianglePass& seen, const Note& note) { lineage.decided(seen, {}, note); }
-    /// The pass of a finished triangle, with edge k split and both children finished.
+    /// Forwards the pass of a finished triangle as if edge k were split and both children finished.
     void split_alone(const TrianglePass& whole, const Note& note, int k) {
         TrianglePass broken = whole;
         broken.split = static_cast<std::uint8_t>(1U << k);
@@ -189,7 +189,7 @@ TEST_CASE("lineage: an edge split by one triangle alone is a T-vertex, but on th
                 });
             if (!border)
                 continue;
-            // Two pieces, which the other side does not have.
+            // Two pieces, which the triangle on the other side lacks.
             require_faults(result, *border ? 0 : 2, *border ? 0 : 1, 0);
             ++(*border ? on_border : inside);
         }
@@ -256,20 +256,20 @@ TEST_CASE("lineage: a wrong triangulation leaves edges without their triangles")
 
 TEST_CASE("lineage: the datapath's own faults between base triangles") {
     const MachineSetup setup = setup_of(small_job());
-    // One copy of a shared vertex is of the last generation: its triangles keep their edges whole.
+    // One copy of a shared vertex is of the last generation, so that its triangles do not split their edges there.
     MachineSetup older = setup;
     older.base_triangles[1].vertices[1].generation = static_cast<std::uint8_t>(setup.registers.tests.generation_limit);
     const InvariantResult result = check(older);
     CHECK(result.inconsistent_vertices == 1);
     CHECK(result.t_vertices > 0);
-    CHECK(result.cracks > 1);  // the other side's halves
+    CHECK(result.cracks > 1);  // the halves on the other side
     CHECK(result.first_violation.find("base triangle ") == 0);
 }
 
 TEST_CASE("lineage: a base triangle that is there twice, and a mesh folded on itself") {
     MachineSetup setup = setup_of(small_job());
     const std::size_t once = setup.base_triangles.size();
-    for (std::size_t b = 0; b < once; ++b) {  // a second copy, wound the other way
+    for (std::size_t b = 0; b < once; ++b) {  // a second copy, wound the opposite way
         Triangle other = setup.base_triangles[b];
         std::swap(other.vertices[0], other.vertices[1]);
         other.base = static_cast<std::uint32_t>(once + b);
@@ -332,11 +332,11 @@ TEST_CASE("lineage: a cylinder's seam") {
 }
 
 TEST_CASE("lineage: pieces open along a seam are counted on the finer side") {
-    // Two triangles over one map but for their common edge, whose copies are half the map apart: one splits, one not.
+    // Two triangles over one map; the copies of their common edge are half the map apart. One splits, one does not.
     MachineSetup setup = setup_of(small_job());
     setup.base_triangles.resize(2);
     for (datapath::Vertex& v : setup.base_triangles[1].vertices)
-        v.generation = static_cast<std::uint8_t>(setup.registers.tests.generation_limit);  // stays whole
+        v.generation = static_cast<std::uint8_t>(setup.registers.tests.generation_limit);  // does not split
     std::uint64_t pieces = 0;
     for (datapath::Vertex& v : setup.base_triangles[1].vertices)
         v.texture.u += 1;

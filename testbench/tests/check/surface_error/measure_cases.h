@@ -25,7 +25,7 @@ inline HeightMap make_map(int width, int height, const std::function<double(int,
     return map;
 }
 
-/// The base mesh itself as an emitted one, its vertices moved by `moved`.
+/// The base mesh as an emitted one, with its vertices moved by `moved`.
 inline RecordedMesh emitted(const BaseMesh& base, const std::function<glm::dvec3(const BaseVertex&)>& moved) {
     RecordedMesh mesh;
     for (const BaseVertex& vertex : base.vertices) {
@@ -46,7 +46,7 @@ inline RecordedMesh emitted(const BaseMesh& base) {
     return emitted(base, [](const BaseVertex& v) { return v.position; });
 }
 
-/// The figures of SurfaceError by comparing everything with everything.
+/// The figures of SurfaceError, computed by comparing everything with everything.
 struct BruteForce {
     double reference_max = 0, reference_rms = 0, mesh_max = 0, mesh_rms = 0;
 };
@@ -68,7 +68,7 @@ inline BruteForce brute_force(const BaseMesh& base, const HeightMap& map, const 
     BruteForce result;
     std::vector<TriangleSoup::Corners> facets;
     double squares = 0, weights = 0;
-    // The lattice point by point and facet by facet, without its tiles.
+    // Goes through the lattice by points and facets, without its tiles.
     for (std::size_t k = 0; k < surface.triangles(); ++k) {
         const DisplacedSurface::Corners corners = surface.corners(k);
         const int n = static_cast<int>(lattice.subdivision(k));

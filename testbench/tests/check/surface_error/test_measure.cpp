@@ -69,7 +69,7 @@ TEST_CASE("a mesh that is the surface has no error, and one shifted by d has the
                 CHECK(static_cast<double>(t.reference_max) == Approx(std::abs(d)).epsilon(1e-6).margin(1e-14));
         }
     }
-    // Sideways only what leaves the other's outline is away from it.
+    // After a shift sideways only the parts outside the other's outline have a distance.
     const RecordedMesh aside = emitted(base, [](const BaseVertex& v) { return v.position + glm::dvec3(0.25, 0, 2); });
     const SurfaceError error = measured(base, map, heights(2), aside);
     CHECK(error.reference_to_mesh.max == Approx(0.25));
@@ -80,7 +80,7 @@ TEST_CASE("a mesh that is the surface has no error, and one shifted by d has the
 }
 
 TEST_CASE("a tent over its undisplaced base, in closed form") {
-    // Nine texels of one model unit: 0 at the first centre, 1 at the fifth, 0 at the ninth; level outside these.
+    // Nine texels of one model unit: 0 at the first centre, 1 at the fifth, 0 at the ninth; level beyond these.
     const BaseMesh base = make_plane(2, 1, 9, 1);
     const HeightMap map = make_map(9, 1, [](int x, int) { return 1 - std::abs(x - 4) / 4.0; });
     const double top = 3;
@@ -88,12 +88,12 @@ TEST_CASE("a tent over its undisplaced base, in closed form") {
     CHECK(error.reference_to_mesh.max == Approx(top));
     CHECK(error.reference_to_mesh.worst->position.z == Approx(top));
     CHECK(error.reference_to_mesh.worst->texture.x == Approx(0.5));
-    // Its square's integral is 2 * 4 * top^2 / 3 of 9.
+    // The integral of its square is 2 * 4 * top^2 / 3, over a length of 9.
     CHECK(error.reference_to_mesh.rms == Approx(top * std::sqrt(8.0 / 27)).epsilon(2e-3));
-    // Below the ridge the roof is nearest, at a right angle; the base has a vertex there.
+    // Below the ridge the nearest point lies on the slope, perpendicular to it; the base has a vertex there.
     CHECK(error.mesh_to_reference.max == Approx(4 * top / 5));
     CHECK(error.mesh_to_reference.worst->position.x == Approx(0).margin(1e-12));
-    // As the hardware reads it the ridge is a texel wide.
+    // As the hardware reads the map, the ridge is one texel wide.
     const SurfaceError steps = measured(base, map, heights(top), emitted(base), Sampling::nearest_texel);
     CHECK(steps.reference_to_mesh.max == Approx(top));
     double squares = 0;
@@ -126,7 +126,7 @@ TEST_CASE("the map between its texels, interpolated and as the hardware reads it
     CHECK(value(3, 0.5, S::interpolated, A::repeat) == Approx(1));
     CHECK(value(-2.5, -1.5, S::interpolated, A::repeat) == Approx(0));
     CHECK(value(7.5, 1.5, S::nearest_texel, A::repeat) == 11);
-    // on an edge but for rounding
+    // on an edge except for rounding
     CHECK(value(2 - 1e-13, 0.5, S::nearest_texel, A::clamp) == 2);
 }
 
@@ -160,7 +160,7 @@ TEST_CASE("figures are those of comparing everything with everything") {
                         : round % 3 == 1 ? make_cylinder(3, 1, 1, 2)
                                          : make_plane(1, 1, 1, 3);
         const HeightMap map = make_map(1 + round % 5, 1 + round / 3, [&](int, int) { return uniform(0, 1); });
-        // Of several sizes, anywhere near the surface; some collapsed.
+        // Triangles of several sizes, anywhere near the surface; some are degenerate.
         RecordedMesh mesh;
         const int count = 1 + 7 * round;
         for (int k = 0; k < count; ++k) {
@@ -196,7 +196,7 @@ TEST_CASE("many tiles and a fine mesh against comparing everything with everythi
     const HeightMap map =
         make_map(13, 9, [&](int, int) { return std::uniform_real_distribution<double>(0, 1)(random); });
     const BaseMesh fine = make_plane(9, 11, 2, 2);
-    for (const double scale : {0.05, 5.0}) {  // smooth against a texel, and needles
+    for (const double scale : {0.05, 5.0}) {  // smooth on the scale of a texel, and with needles
         const DisplacedSurface surface(fine, map, heights(scale), LocalFrame{});
         RecordedMesh mesh = emitted(fine, [&](const BaseVertex& v) {
             const double value = surface.value(v.texture * glm::dvec2(13, 9), Sampling::nearest_texel);
@@ -254,7 +254,7 @@ TEST_CASE("mirroring all, turning corners and mixing triangles change no figure"
     }
     same(
         measured(mirrored_base, make_map(8, 8, [&](int x, int y) { return value(7 - x, y); }), heights(0.5), mirrored));
-    // The same question gives the same bits.
+    // Repeating the measurement gives the same bits.
     const SurfaceError again = measured(base, map, heights(0.5), mesh);
     CHECK(again.reference_to_mesh.rms == error.reference_to_mesh.rms);
     CHECK(again.mesh_to_reference.rms == error.mesh_to_reference.rms);
@@ -325,12 +325,12 @@ TEST_CASE("what the emitted triangle at the worst spot was kept whole by is told
 TEST_CASE("a surface that closes in u is measured across its seam") {
     const BaseMesh base = make_cylinder(16, 2, 1, 1);
     const HeightMap map = make_map(16, 4, [](int x, int) { return x == 0 || x == 15 ? 1 : 0; });
-    // Interpolated across the seam the two texels of height 1 make one ridge; clamped they would too, but end level.
+    // Interpolated across the seam the two texels of height 1 form one ridge; clamped too, but level at the end.
     const DisplacementOf displacement{0.5, 0, Addressing::repeat, Addressing::clamp};
     const DisplacedSurface surface(base, map, displacement, LocalFrame{});
     CHECK(surface.value({0, 2}, Sampling::interpolated) == 1);
     CHECK(surface.value({16, 2}, Sampling::interpolated) == 1);
-    BaseMesh shifted = base;  // whole periods away: the same surface
+    BaseMesh shifted = base;  // shifted by whole periods: the same surface
     for (BaseVertex& v : shifted.vertices)
         v.texture.x += 3;
     const SurfaceError one = measured(base, map, displacement, emitted(base));
@@ -352,7 +352,7 @@ TEST_CASE("limits lower the density and say so, to a facet a base triangle at th
     CHECK(coarse.samples() <= 10000);
     CHECK(coarse.samples() > 8000);
     CHECK(coarse.density() == Approx(4 * std::sqrt(10000.0 / (8 * 129 * 130 / 2))).epsilon(0.05));
-    // Three points for each of eight triangles, whose longest edges are 32 texels along an axis.
+    // Three points for each of eight triangles, whose longest edges span 32 texels along an axis.
     const ReferenceLattice least(surface, 23);
     CHECK(least.samples() == 24);
     CHECK(least.density() == 1.0 / 32);

@@ -37,7 +37,7 @@ TEST_CASE("vertical error of the undisplaced base is the map itself") {
 }
 
 TEST_CASE("a mesh through all texel centres has no vertical error, and a hole is not covered") {
-    // Vertices at the texel centres of the inside, clamped to the border outside.
+    // Vertices at all texel centres, no triangles beyond them.
     const int size = 6;
     BaseMesh base = make_plane(1, 1, size, size);
     const HeightMap map = make_map(size, size, [](int x, int y) { return (x * 5 + y * 3) % 7; });
@@ -55,7 +55,7 @@ TEST_CASE("a mesh through all texel centres has no vertical error, and a hole is
     error = vertical(base, map, scaled(0.5, 1), mesh);
     CHECK(error.max == Approx(0.125).epsilon(1e-6));
     CHECK(error.rms == Approx(0.125).epsilon(1e-6));
-    // Without the two triangles at the first corner its grid point is bare.
+    // Without the two triangles at the first corner its grid point is not covered.
     mesh.triangles.erase(mesh.triangles.begin(), mesh.triangles.begin() + 2);
     error = vertical(base, map, scaled(0.5, 1), mesh);
     CHECK(error.grid_points == 36);
@@ -82,7 +82,7 @@ TEST_CASE("heights over a plane in any position, and over each copy of a map tha
     for (const float value : map.values)
         squares += 0.25 * static_cast<double>(value) * static_cast<double>(value) / 16;
     CHECK(error.rms == Approx(std::sqrt(squares)));
-    // Turned about, with the texture mirrored, it is a height field still.
+    // Turned over, with the texture mirrored, it is still a height field.
     for (BaseVertex& v : base.vertices) {
         v.normal = -v.normal;
         v.texture.x = 2 - v.texture.x;
@@ -93,7 +93,7 @@ TEST_CASE("heights over a plane in any position, and over each copy of a map tha
 TEST_CASE("an axis that repeats and one that clamps are told apart") {
     const HeightMap map = make_map(4, 4, [](int x, int y) { return x + 10 * y; });
     for (const bool along_u : {true, false}) {
-        // Two copies along one axis: a clamp there would read 3 instead of 0, 1 and 2 beyond the first.
+        // Two copies along one axis: clamped there, it would read 3 instead of 0, 1 and 2 beyond the first.
         BaseMesh base = make_plane(2, 2, 2, 2);
         for (BaseVertex& v : base.vertices)
             (along_u ? v.texture.x : v.texture.y) *= 2;

@@ -8,8 +8,8 @@
 #include "testbench/tests/support/job_settings.h"
 #include "testbench/tests/support/timed_checks.h"
 
-// Each equation of conservation.cpp: what its sides are in a run that can be counted by hand, and that each side counts
-// what it says and nothing else, by doing one thing too many to one unit.
+// Each equation of conservation.cpp: the values of its sides in a run that can be counted by hand, and that each side
+// counts only what it names, tested by one extra action in one unit.
 
 using namespace tessera;
 using namespace tessera::testing;
@@ -26,8 +26,8 @@ Equations sides_of(const Simulation& simulation) {
     return sides;
 }
 
-/// Does something to a machine that has run, and requires that the sides of all equations change by so much, those of
-/// equations that are not named by nothing.
+/// Performs an action on a machine that has run, and requires that the sides of the named equations change by the given
+/// amounts and all other equations not at all.
 template <class Act>
 void expect_change(const std::string& what, const Simulation& simulation, Act&& act, const Equations& expected) {
     const Equations before = sides_of(simulation);
@@ -49,7 +49,7 @@ void expect_change(const std::string& what, const Simulation& simulation, Act&& 
 /// parts = 6 + 30 + 8 * 3. No rectangle wraps: four entries each.
 MachineSetup two_triangles_split_once() {
     MachineSetup setup = setup_of(full_split_job(1, 1));
-    setup.design.packed_streams = false;  // the tests below send items of triangles that no tag can name
+    setup.design.packed_streams = false;  // the tests below send items with tags that exceed tag_bits
     return setup;
 }
 
@@ -103,7 +103,7 @@ Equations two_triangles_timed() {
     return all;
 }
 
-/// A triangle of which all is known: its edges are all that is left of it.
+/// A triangle with all vertices known: only its edges remain to be sent.
 TakenTriangle known_triangle() {
     TakenTriangle taken;
     for (datapath::Vertex& vertex : taken.triangle.vertices)
@@ -111,7 +111,7 @@ TakenTriangle known_triangle() {
     return taken;
 }
 
-/// Part `part` of a triangle that no other has.
+/// Part `part` of a triangle with a tag that no other has.
 template <class Item>
 Item part_of_it(unsigned part) {
     Item item;
@@ -132,7 +132,7 @@ void give(Output& output, Payload& payload) {
     output->b_transport(payload, delay);
 }
 
-/// A read of one entry past the unit that reads the table.
+/// Reads one entry, bypassing the unit that reads the table.
 void read_directly(MemoryPort& port, std::uint64_t address) {
     std::array<unsigned char, 8> data{};
     MemoryRequest request{tlm::TLM_READ_COMMAND, 1, port.entry_bytes(), {address}, data.data()};
@@ -157,7 +157,7 @@ TEST_CASE("conservation: the sides of every equation, timed mode, by hand") {
     CHECK(sides_of(simulation) == two_triangles_timed());
 }
 
-// A constant map: one triangle that no edge splits goes round once more for its normals. Culling drops it at the end.
+// A constant map: one triangle without split edges makes a second pass for its normals. Culling drops it at the end.
 TEST_CASE("conservation: triangles sent round for normals, and culled ones") {
     Job job = timed_job();
     job.mesh.columns = job.mesh.rows = 1;
@@ -246,7 +246,7 @@ TEST_CASE("conservation: a read too many") {
     expect_change("Summed Height Table", simulation,
                   [&] { p.tessellation_tests[0].height_test.table.read(r.height_table.base, delay); },
                   {{"entries of summed_height_table = read by its test", {1, 1}}});
-    // the same past the units
+    // the same, bypassing the units
     expect_change("displacement map, past its unit", simulation,
                   [&] { read_directly(p.displace_vertex.displacement_map, r.displacement_map.base); },
                   {{"entries of displacement_map = read", {1, 0}}});
@@ -291,7 +291,7 @@ TEST_CASE("conservation: each side of the displacement map has its own requests 
                   {{"entries of displacement_map_for_tests = read by its test", {1, 0}}});
 }
 
-// By blocking transport, which does the whole work at once.
+// By blocking transport, which does all the work at once.
 TEST_CASE("conservation: a vertex transformed, and triangles decided, too many") {
     TimedRun simulation(two_triangles_split_once());
     Pipeline& p = simulation.pipeline;
@@ -322,7 +322,7 @@ TEST_CASE("conservation: a vertex transformed, and triangles decided, too many")
                    {"requests to displacement_map = vertices, midpoints and texels", {0, 3}},
                    {"requests to normal_map = vertices and edges of normal_test", {0, 3}}});
 
-    // one of its branches: Pass or Tessellate waits for the other
+    // one of its branches only: Pass or Tessellate waits for the other
     taken = known_triangle();
     taken.tag = 1000;
     taken.triangle.vertices[0].displaced_known = false;
@@ -382,7 +382,7 @@ TEST_CASE("conservation: a vertex transformed, and triangles decided, too many")
                    {"triangles in triangle_queue = taken by it", {0, 1}}});
 }
 
-// Two places on chip: of what is spilled some is still off chip when the machine is stopped.
+// Two places on chip: some of the spilled triangles are still off chip when the machine is stopped.
 TEST_CASE("conservation: triangles that are off chip have not come back") {
     Job job = full_split_job(1, 3);
     job.hardware.queue_capacity = 2;

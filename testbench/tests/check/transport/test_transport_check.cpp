@@ -7,8 +7,8 @@
 #include "testbench/check/transport/conservation.h"
 #include "testbench/tests/support/timed_checks.h"
 
-// The transport check (key check.work) over whole runs: nothing is lost, doubled or altered, down to what the
-// rasteriser gets.
+// The transport check (key check.work) over whole runs: nothing is lost, duplicated or altered on the way to the
+// rasteriser.
 
 using namespace tessera;
 using namespace tessera::testing;
@@ -30,15 +30,15 @@ void require_work_conserved(const Job& job) {
     CHECK(result.triangles == simulation.pipeline.pass_or_tessellate.counts().passes);
     CHECK(result.equations > 10);
 
-    // The same, but for one triangle that the rasteriser gets twice.
+    // The same, with one triangle more at the rasteriser.
     work.write(LitTriangle{});
     const WorkResult doubled = work_result(work, simulation);
     CHECK(doubled.violations == 1);
     CHECK_THAT(doubled.first_violation, Contains("1 triangles more were lit than were to be"));
 }
 
-/// One base triangle, decided and not split, finished and lit. It faces the viewer; N' are zero, and so are
-/// N's, so that only ambient light is left.
+/// One base triangle, decided and not split, finished and lit. It faces the viewer; N and N' are zero, so that only
+/// ambient light remains.
 struct OneTriangle {
     datapath::Registers registers;
     datapath::Triangle base;
@@ -80,7 +80,7 @@ TEST_CASE("work check: whatever changes on a triangle's way is noticed where it 
     struct Field {
         const char* name;
         std::function<void(Vertex&)> change;
-        bool of_base;  // the host has set it; the others are found when the triangle is decided
+        bool of_base;  // set by the host; the others are computed when the triangle is decided
     };
     const std::vector<Field> fields = {
         {"position.x", [](Vertex& v) { ++v.position.x; }, true},
@@ -142,7 +142,7 @@ TEST_CASE("work check: whatever changes on a triangle's way is noticed where it 
     }
     CHECK(found([](OneTriangle& w) { w.pass.triangle.base = w.finished.base = 1; }) ==
           "base triangle 0: 1 triangles that were to be decided never were");
-    // One from nowhere, one that is lost, and one that faces away and is lit all the same.
+    // A triangle without a base triangle, a lost one, and a lit one that faces away.
     OneTriangle stray;
     TransportCheck check(stray.registers, {});
     check.write(stray.pass);

@@ -19,7 +19,7 @@ using namespace tessera;
 
 namespace {
 
-/// Adds up the errors of finished triangles.
+/// Sums the errors of finished triangles.
 struct Meter {
     struct Note {};
 
@@ -34,7 +34,7 @@ struct Meter {
     }
 };
 
-/// A plane over a map with vertices at its border and every 16 texels from `first` on.
+/// A plane over a map, with vertices at its border and every 16 texels from `first`.
 BaseMesh plane_from(const glm::dvec2& first, const HeightMap& map, const Job::Mesh& size) {
     const auto lines = [](double from, int texels) {
         std::vector<double> at{0};
@@ -55,7 +55,7 @@ BaseMesh plane_from(const glm::dvec2& first, const HeightMap& map, const Job::Me
     return mesh;
 }
 
-/// RMS error at Crater Lake's grid points, m, with a bilinear filter, all edges split down to the map's resolution.
+/// RMS error in m at Crater Lake's grid points, with a bilinear filter and all edges split to the map's resolution.
 double crater_lake_rms(const glm::dvec2& first, std::int64_t tex_coord_fraction) {
     Job job = read_job(source_folder() / "testbench/examples/jobs/crater_lake_704.toml");
     resolve_paths(job, {});
@@ -71,14 +71,14 @@ double crater_lake_rms(const glm::dvec2& first, std::int64_t tex_coord_fraction)
     const TexelError errors(setup, map, DisplacementOf::from(job, map));
     Meter meter{errors};
     BareRecursion(setup).walk(meter);
-    return 1000 * std::sqrt(meter.sum.squares / meter.sum.weight);  // of km
+    return 1000 * std::sqrt(meter.sum.squares / meter.sum.weight);  // heights are in km
 }
 
 }  // namespace
 
 TEST_CASE("a bilinear filter alone leaves less than 1.3 m of Crater Lake, wherever base vertices lie") {
     constexpr std::int64_t by_the_filter = -1;
-    // texels from a border, on each axis
+    // distances from a border in texels, on each axis
     for (const glm::dvec2 first :
          {glm::dvec2(0), glm::dvec2(0.25), glm::dvec2(0.5), glm::dvec2(0.75, 0.25), glm::dvec2(0, 0.5)}) {
         INFO("vertices " << first.x << ", " << first.y << " texels from a border");

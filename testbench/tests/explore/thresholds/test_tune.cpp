@@ -45,7 +45,7 @@ TuneResult tuned(const TuneRequest& request) {
     return tune(request, load_map(request.job), [](const std::string&, double) {});
 }
 
-/// A job's tests and what measures them.
+/// A job's tests, with everything needed to measure them.
 struct Ground {
     HeightMap map;
     BaseMesh base;
@@ -93,7 +93,7 @@ std::multiset<Corners> bare_mesh(const MachineSetup& setup) {
     return result;
 }
 
-/// The best of a dense grid of both thresholds, each test also alone.
+/// The best point of a dense grid of both thresholds, each test also alone.
 TunedPoint brute_force(const Job& job, const TuneGoal& goal) {
     Ground ground(job);
     TunedPoint best;
@@ -173,7 +173,7 @@ TEST_CASE("the forest's mesh is the datapath's, whatever the thresholds") {
             for (const auto& vertices : ground.forest.mesh(setup.registers.tests, setup.registers.triangulation))
                 mesh.insert(corners_of(vertices));
             INFO("round " << round << ", " << mesh.size() << " triangles");
-            CHECK((mesh == bare_mesh(setup)));  // not worth printing
+            CHECK((mesh == bare_mesh(setup)));  // extra parentheses: a failure prints no meshes
             CHECK(ground.forest.count(setup.registers.tests, setup.registers.triangulation, mesh.size()).complete);
             CHECK_FALSE(
                 ground.forest.count(setup.registers.tests, setup.registers.triangulation, mesh.size() - 1).complete);
@@ -183,7 +183,7 @@ TEST_CASE("the forest's mesh is the datapath's, whatever the thresholds") {
 
 TEST_CASE("the search's error on a height field is the vertical error") {
     Job job = small_job();
-    job.mesh.columns = 5;  // vertices off the texel grid, and on it
+    job.mesh.columns = 5;  // some vertices on the texel grid, others off it
     job.mesh.rows = 4;
     for (const double threshold : {2.0, 0.3, 0.05}) {
         job.tests.normal_threshold = threshold;
@@ -234,7 +234,7 @@ TEST_CASE("tuned thresholds stand clear of every edge's own value") {
             for (double Job::Tests::*threshold : {&Job::Tests::normal_threshold, &Job::Tests::summed_height_threshold})
                 if (result.job.tests.*threshold > 0) {
                     const int level = level_of(result.job.tests.*threshold);
-                    // levels on one side that give the same mesh
+                    // the number of levels on one side that give the same mesh
                     const auto room = [&](int direction) {
                         int steps = 0;
                         for (Job job = result.job; steps < 8; ++steps) {
@@ -328,7 +328,7 @@ TEST_CASE("a Rank Test's threshold is the best of all that its register can hold
             const TunedPoint point = tuned(request).point;
             INFO("error of at most " << bound << ", largest " << largest);
             CHECK(request.goal.error_of(point.outcome) <= bound);
-            if (largest) {  // what is promised, and less than an entry's step below
+            if (largest) {  // the promised bound is below it by less than an entry's step
                 const double promised = point.tests.bound_threshold * request.job.displacement.scale;
                 CHECK(promised == Approx(bound).epsilon(0.1));
                 continue;
@@ -482,7 +482,7 @@ TEST_CASE("goals that cannot be met end in what can be had") {
     request.goal.triangles = 0;
     request.goal.error = 1e-6;
     CHECK_THAT(refused(), Contains("--error") && Contains("the least RMS error"));
-    // Tests that are not searched leave no way down.
+    // The test that is not searched keeps the mesh too large.
     request.goal.error = 0;
     request.goal.triangles = 100;
     request.space.summed_height = false;

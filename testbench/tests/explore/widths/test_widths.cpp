@@ -31,7 +31,7 @@ Job sphere_job() {
     job.mesh.rows = 6;
     job.map.address_u = Addressing::repeat;
     job.displacement.scale = 0.1;
-    job.tests.summed_height_threshold = 2;  // a step of its register at 2 bits of displacement is 1 / 12
+    job.tests.summed_height_threshold = 2;  // with 2 displacement bits a step of its register is 1 / 12
     return job;
 }
 
@@ -51,7 +51,7 @@ WidthRun run_of(const Job& job) {
     return run_widths(make_setup(resolved.job, mesh, map), ExactModel(resolved.job, mesh, map), 1'000'000);
 }
 
-/// Every figure that `tessera run` has, too.
+/// Compares every figure that `tessera run` has, too.
 void expect_the_simulation_figures(const Job& job) {
     const WidthRun run = run_of(job);
     const MachineSetup setup = setup_of(job);
@@ -125,7 +125,7 @@ TEST_CASE("widths: a row's figures are the simulation's, full light") {
     job.hardware.light = {0, 0, 1};
     CHECK(run_of(job).saturations.intensity == 54);
     Job culled = job;
-    culled.hardware.culling = Culling::back;  // seen edge on, all of it: nothing is lit
+    culled.hardware.culling = Culling::back;  // seen edge-on everywhere: nothing is lit
     CHECK(run_of(culled).saturations.intensity == 0);
     expect_the_simulation_figures(job);
 }
@@ -137,7 +137,7 @@ TEST_CASE("widths: a row's figures are the simulation's, a sphere of few texture
 }
 
 TEST_CASE("widths: where everything can be written exactly nothing differs from exact arithmetic") {
-    // a plane of 4 x 4 quads on 64 texels: all coordinates are dyadic, and no normal is rounded on a constant map
+    // a plane of 4 x 4 quads on 64 texels: all coordinates are dyadic, and on a constant map no normal is rounded
     Job job = small_job();
     job.mesh.columns = job.mesh.rows = 4;
     job.map.source = MapSource::constant;
@@ -150,7 +150,7 @@ TEST_CASE("widths: where everything can be written exactly nothing differs from 
     for (const std::uint64_t flips : whole.flips)
         CHECK(flips == 0);
 
-    // heights of one bit: 0 and full scale are exact, half is not
+    // heights of one bit: 0 and full scale are exact, one half is not
     job.map.source = MapSource::ramp;
     job.tests.normal_threshold = 0.12;
     job.formats.displacement_bits = 1;
@@ -168,7 +168,7 @@ TEST_CASE("widths: a position's error is the midpoint's rounding, of a flat surf
     job.tests.summed_height_threshold = 0.05;
     const WidthRun run = run_of(job);
     REQUIRE(run.edges_split > 20);
-    // every generation rounds down by at most half an LSB an axis: E_g <= (E_i + E_j) / 2 + 1/2
+    // every generation rounds down by at most half an LSB per axis: E_g <= (E_i + E_j) / 2 + 1/2
     const double generations = static_cast<double>(job.tests.generation_limit);
     CHECK(run.position_max > 0);
     CHECK(run.position_max <= run.position_lsb * std::sqrt(2.0) * (0.5 + 0.5 * generations));
@@ -232,7 +232,7 @@ TEST_CASE("widths: the knee is the narrowest width that keeps, with all wider on
     REQUIRE(anything.knee.row);
     CHECK(*anything.knee.row == 4);
     CHECK_FALSE(knee(100.0, 0.0).knee.row);
-    // at the third row's own figures, the third row
+    // with the third row's own figures as limits the knee is the third row
     const WidthRun& third = anything.rows[2].run;
     REQUIRE(anything.rows[3].run.split_flips_percent() > third.split_flips_percent());
     const WidthTable at_third = knee(third.split_flips_percent(), 1e9);
@@ -275,7 +275,7 @@ TEST_CASE("widths: the widths of a sweep, widest first, the job's own among them
         CHECK(std::is_sorted(widths.rbegin(), widths.rend()));
         CHECK(widths.size() > 1);
         CHECK(widths.size() <= 17);
-        if (quantity.bits(formats) != 0)  // a Summed Height Table that chooses for itself
+        if (quantity.bits(formats) != 0)  // 0: the Summed Height Table's width is chosen automatically
             CHECK(std::count(widths.begin(), widths.end(), quantity.bits(formats)) == 1);
         for (const std::int64_t bits : widths) {
             Job::Formats changed = formats;
@@ -301,7 +301,7 @@ TEST_CASE("widths: base triangles that collapse in a narrow format are left out 
     const auto corners = exact.corners_of(setup);
     REQUIRE(corners.size() == setup.base_triangles.size());
     const WidthRun run = run_widths(setup, exact, 1'000'000);
-    // P' of a wrong triangle would lie a column away at least; rounding moves it by less than this
+    // P' of a wrong triangle would be at least a column away; rounding moves it by less than this
     CHECK(run.position_max < 1.0);
     for (std::size_t k = 0; k < corners.size(); ++k)
         for (std::size_t c = 0; c < 3; ++c) {

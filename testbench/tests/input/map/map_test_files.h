@@ -36,7 +36,7 @@ struct ExrImage {
 };
 void write_exr(const std::filesystem::path& path, const ExrImage& image);
 
-/// What read_height_map() makes of a file.
+/// The result of read_height_map() for a file.
 struct Outcome {
     enum class Kind { loaded, loaded_with_remark, refused, wrong_exception } kind;
     std::string message;

@@ -29,14 +29,14 @@ namespace {
 constexpr float infinity = std::numeric_limits<float>::infinity();
 constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
 
-// 19 x 21, so that tiles of 8 and blocks of 16 lines end in part; exact in half.
+// 19 x 21, so that the last tiles of 8 and blocks of 16 lines are partial; values are exact in half precision.
 ExrImage steps() {
     ExrImage image{19, 21, std::vector<float>(std::size_t{19} * 21)};
     std::iota(image.values.begin(), image.values.end(), 3.F);
     return image;
 }
 
-/// So many zeros, 128 at the most, as RLE (1) or ZIP compression (2, 3) stores them.
+/// `count` zeros, at most 128, as RLE (1) or ZIP compression (2, 3) stores them.
 std::string compressed_zeros(int compression, std::size_t count) {
     if (compression == 1)
         return {static_cast<char>(count - 1), '\0'};
@@ -48,7 +48,7 @@ std::string compressed_zeros(int compression, std::size_t count) {
     return result;
 }
 
-/// Where the first chunk of an EXR file begins: the offset table ends where its own first entry points.
+/// The position of the first chunk of an EXR file, where the offset table ends and its first entry points.
 std::size_t first_chunk(const std::string& file, std::size_t chunks) {
     for (std::size_t at = 8; at + 8 <= file.size(); ++at) {
         std::uint64_t offset = 0;
@@ -199,7 +199,7 @@ TEST_CASE("the OpenEXR project's own test images are read") {
         for (const float value : map.values)
             REQUIRE(std::isfinite(value));
     }
-    // The same picture; only its windows differ.
+    // The same picture with other windows.
     const HeightMap t02 = read_height_map(folder / "oexr_t02.exr");
     CHECK(t02.values == read_height_map(folder / "oexr_t05.exr").values);
     CHECK(t02.values == read_height_map(folder / "oexr_t08.exr").values);
@@ -211,7 +211,7 @@ TEST_CASE("an EXR chunk that holds less than its pixels is refused, whatever its
         GENERATE(table<int, bool>({{0, false}, {0, true}, {1, false}, {1, true}, {2, false}, {3, false}, {3, true}}));
     ExrImage image{16, 16, std::vector<float>(256)};
     for (std::size_t k = 0; k < image.values.size(); ++k)
-        image.values[k] = static_cast<float>(k / 2);  // shrinks under every compression
+        image.values[k] = static_cast<float>(k / 2);  // compresses well with every method
     image.compression = compression;
     image.tiled = tiled;
     write_exr(folder / "good.exr", image);
@@ -222,7 +222,7 @@ TEST_CASE("an EXR chunk that holds less than its pixels is refused, whatever its
     const std::size_t chunk = first_chunk(good, tiled ? 4 : compression == 3 ? 1 : 16);
     std::string bad = good;
     if (compression == 0) {
-        bad[chunk + head - 4] = static_cast<char>(tiled ? 252 : 60);  // a pixel less
+        bad[chunk + head - 4] = static_cast<char>(tiled ? 252 : 60);  // one pixel fewer
         bad[chunk + head - 3] = 0;
     } else {
         const std::string shorter = compressed_zeros(compression, tiled ? 128 : compression == 3 ? 512 : 32);
@@ -246,7 +246,7 @@ TEST_CASE("an EXR file without what its pixels can do without is read with a rem
     std::string bad = good;
     std::string remark;
     SECTION("offsets") {
-        // All of the table, and its last entry only.
+        // Either the whole table is missing, or its last entry only.
         const std::size_t missing = GENERATE(true, false) ? chunks : 1;
         bad.replace(table + 8 * (chunks - missing), 8 * missing, std::string(8 * missing, '\0'));
         remark = "offset table is incomplete";

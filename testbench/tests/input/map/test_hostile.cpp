@@ -1,5 +1,5 @@
-// Files that lie, break off, or were damaged: every one is refused with InputError or read, never anything
-// else, and none makes the process grow by more than 256 MiB.
+// Files that are malformed, truncated or damaged: each is either read or refused with InputError, and none makes the
+// process grow by more than 256 MiB.
 #include <png.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -36,9 +36,9 @@ long resident_peak() {
     return usage.ru_maxrss * 1024;
 }
 
-// Reads the file in a process whose address space may grow by allowed_growth. True: it ended by itself,
-// neither it nor a library met the limit, and its resident memory grew less. (AddressSanitizer reserves
-// address space by the terabyte: there the limit must go.)
+// Reads the file in a process whose address space may grow by allowed_growth. True if it exits normally, neither it nor
+// a library reaches the limit, and its resident memory grows less. (AddressSanitizer reserves terabytes of address
+// space: with it there is no limit.)
 bool reads_in_little_memory(const std::filesystem::path& path) {
     const ChildEnd end = run_in_child([&]() -> std::string {
         if (!sanitized) {
@@ -55,7 +55,7 @@ bool reads_in_little_memory(const std::filesystem::path& path) {
     return end.told == "yes" && end.failure.empty();
 }
 
-// Refused, and in one line that names the file.
+// Requires a refusal in one line that names the file.
 void check_refusal(const Outcome& outcome, const std::filesystem::path& path) {
     INFO(outcome.message);
     CHECK(outcome.kind == Outcome::Kind::refused);
@@ -66,8 +66,8 @@ void check_refusal(const Outcome& outcome, const std::filesystem::path& path) {
 
 constexpr int damaged_files = 200;
 
-// Half of them cut off, half with one to three bytes changed; how many were refused. Every one must be, in one line, or
-// be a whole map, and a cut one is never taken for whole without a remark.
+// Truncates half of the files and changes one to three bytes of the others; returns how many were refused. Each must be
+// refused in one line or give a whole map, and a truncated one only with a remark.
 int refused_damage(const TestFolder& folder, const std::string& good) {
     Random random(1);
     const auto place = [&] {
@@ -145,7 +145,7 @@ TEST_CASE("PNG files cut off or with bytes changed are all refused") {
         image.palette = {1, 2, 3, 4, 5, 6};
     write_png(folder / "good.png", image);
     CHECK(outcome_of(folder / "good.png").kind != Outcome::Kind::refused);
-    // Nothing escapes the checksums.
+    // The checksums detect every damage.
     CHECK(refused_damage(folder, read_all(folder / "good.png")) == damaged_files);
 }
 
@@ -171,7 +171,7 @@ void set_far_corner(std::string& bytes, std::uint32_t x, std::uint32_t y) {
     set_word(bytes, value + 12, y);
 }
 
-// Padded, so that an offset table for a large claim fits and the claim gets as far as it can.
+// Padding, so that an offset table for a large claimed size fits and reading gets as far as possible.
 constexpr std::size_t padding_for_tables = 2100000;
 
 }  // namespace

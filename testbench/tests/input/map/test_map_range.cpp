@@ -24,7 +24,7 @@ HeightMap metres() {
     return map;
 }
 
-/// Displacement of the four texels, for scale 3 and bias 10, from the map's own values.
+/// Displacements of the four texels for scale 3 and bias 10, from the map's values.
 std::vector<double> displacements(const HeightMap& map) {
     const MapDisplacement displacement = MapDisplacement::from({3, 10}, map);
     std::vector<double> result;
@@ -33,7 +33,7 @@ std::vector<double> displacements(const HeightMap& map) {
     return result;
 }
 
-/// The same, from the codes and registers the machine has.
+/// The same, from the machine's codes and registers.
 std::vector<double> machine_displacements(HeightMap map, const MapRange& range, MachineSetup* out = nullptr) {
     Job job;
     job.displacement = {3, 10};

@@ -1,5 +1,5 @@
-// PGM and PNG reading, and what read_height_map() itself decides. EXR, hostile files, built-in maps:
-// the other files of this folder.
+// PGM and PNG reading, and the decisions of read_height_map() itself. The other files of this folder test EXR, hostile
+// files and built-in maps.
 #include <png.h>
 
 #include <catch2/catch.hpp>
@@ -52,7 +52,7 @@ TEST_CASE("a 16-bit P5 is big-endian, and its first sample may look like white s
     CHECK(map.at(1, 0) == static_cast<float>(0x0a23 / 65535.0));
     CHECK(read_text_as(folder, "b.pgm", "P5 1 1 255\r\n"s).at(0, 0) == eighth_bit(10));
     CHECK(read_text_as(folder, "c.pgm", "P5 2 1 255\n#\n"s).at(0, 0) == eighth_bit('#'));
-    // After CRLF only if the file's size says so.
+    // CR LF is one separator only if the file's size says so.
     CHECK(read_text_as(folder, "d.pgm", "P5 1 1 255\r\nA"s).at(0, 0) == eighth_bit('A'));
     CHECK(read_text_as(folder, "e.pgm", "P5 1 1 255\r\nAB"s).at(0, 0) == eighth_bit('\n'));
 }
@@ -195,7 +195,7 @@ TEST_CASE("a damaged PNG map is refused, a longer one remarked on") {
     write_all(folder / "crc.png", bad);
     CHECK_THROWS_WITH(read_height_map(folder / "crc.png"), Contains("libpng cannot read") && Contains("CRC"));
 
-    // A colour profile that is none, with a wrong checksum and with a right one, is nothing to a map of heights.
+    // An invalid colour profile, with a wrong or a correct checksum, does not affect a height map.
     for (const std::string& checksum : {std::string(4, '\0'), std::string("\0\xcc\xe6\x19", 4)}) {
         bad = good;
         bad.insert(33, std::string("\0\0\0\x08iCCPbad\0\0\x01\x02\x03", 16) + checksum);

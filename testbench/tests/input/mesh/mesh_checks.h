@@ -11,8 +11,7 @@
 
 namespace tessera {
 
-/// Edges by position: those of one triangle, of two that run through it in opposite directions, and any
-/// other.
+/// Edges by position: those of one triangle, those of two triangles with opposite directions, and all others.
 struct EdgeCounts {
     std::size_t border = 0, shared = 0, odd = 0;
 };
@@ -36,7 +35,7 @@ inline EdgeCounts count_edges(const BaseMesh& mesh) {
     return counts;
 }
 
-/// What every base mesh promises, whatever it was made from.
+/// Properties of every base mesh, whatever its source.
 inline void require_complete(const BaseMesh& mesh) {
     REQUIRE_FALSE(mesh.triangles.empty());
     std::size_t bad_indices = 0, flat = 0, bad_frames = 0, bad_values = 0;

@@ -16,7 +16,7 @@ bool same_bits(const glm::dvec3& a, const glm::dvec3& b) {
     return std::memcmp(&a, &b, sizeof a) == 0;
 }
 
-/// On a mesh around the z axis: every triangle faces away from it or from the origin.
+/// The number of triangles of a mesh around the z axis that do not face away from the axis or the origin.
 std::size_t inward(const BaseMesh& mesh, bool from_axis) {
     std::size_t count = 0;
     for (const auto& t : mesh.triangles) {

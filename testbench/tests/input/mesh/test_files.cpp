@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The files of a folder of the shared data, in order of name; none where it is absent.
+/// The files of a folder of the shared data, sorted by name; none if it is absent.
 std::vector<fs::path> files_in(const char* folder) {
     std::vector<fs::path> files;
     const fs::path path = shared_data(folder);
@@ -42,7 +42,7 @@ TEST_CASE("the shared meshes load") {
         const BaseMesh mesh = read_obj(file.string());
         require_complete(mesh);
         CHECK(mesh.dropped_degenerate == 0);
-        // the teapot has poles, mirrored patches, and normals at its tip that do not agree
+        // the teapot has poles, mirrored patches, and inconsistent normals at its tip
         CHECK(mesh.repairs.empty() == (file.filename() != "teapot_n4.obj"));
     }
 }
@@ -116,7 +116,7 @@ TEST_CASE("the shared cylinders close at their seam") {
 }
 
 TEST_CASE("hostile files load with a repair or end in one clear error") {
-    // The ok_ files give no texture coordinates, which a repair has to say; one holds a face in four
+    // The ok_ files have no texture coordinates, which must be reported as a repair; one holds a face in four
     // spellings.
     const auto told_of_every_ok = [](const std::string& repair) {
         return repair.find("have no texture coordinates") != std::string::npos;
@@ -129,7 +129,7 @@ TEST_CASE("hostile files load with a repair or end in one clear error") {
         try {
             const BaseMesh mesh = read_obj(file.string());
             require_complete(mesh);
-            // that one broke tinyobjloader's triangulation, but is a good mesh with nothing to mend
+            // this file broke tinyobjloader's triangulation, but is a good mesh that needs no repair
             CHECK(mesh.repairs.empty() == (name == "tinyobj_issue-295-trianguation-failure.obj"));
             if (name.rfind("ok_", 0) == 0) {
                 const auto others = std::count_if(mesh.repairs.begin(), mesh.repairs.end(),

@@ -19,7 +19,7 @@ using Catch::Matchers::StartsWith;
 
 namespace {
 
-/// A unit square with texture coordinates and a normal, its faces to be appended.
+/// A unit square with texture coordinates and a normal, to which tests append faces.
 const std::string square =
     "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
     "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
@@ -36,7 +36,7 @@ std::string all_repairs(const BaseMesh& mesh) {
     return all;
 }
 
-/// Area of the mesh in the x,y plane; triangles turned over count negative.
+/// Area of the mesh in the x,y plane; triangles that face downwards count as negative.
 double signed_area(const BaseMesh& mesh) {
     double area = 0;
     for (const auto& t : mesh.triangles) {
@@ -124,7 +124,7 @@ TEST_CASE("bad input ends in an error with file and line") {
         "f /1 /2 /3|f //1 //1 //1|f 1/1/1/1 2/2/1/1 3/3/1/1|f 1,2,3|f 1 2 0x3|f 1 2 3\\");
     for (std::string bad; std::getline(bad_lines, bad, '|');) {
         INFO(bad);
-        // line 10, behind the nine of the square; a good face follows unless the line is to be the last
+        // line 10, after the nine of the square; a good face follows unless the bad line must be the last
         const std::string text = square + bad + (bad.back() == '\\' ? "" : "\nf 1/1 2/2 3/3 4/4\n");
         CHECK_THROWS_AS(parse(text), InputError);
         CHECK_THROWS_WITH(parse(text), StartsWith("test.obj:10: "));
@@ -214,7 +214,7 @@ TEST_CASE("given normals are made unit; without length they are computed") {
 }
 
 TEST_CASE("computed normals are those of the surface, across texture seams, and do not depend on the cut") {
-    // a cube of quads: the three faces at each corner have equal angles, whatever diagonal they are cut along
+    // a cube of quads: the three faces at each corner have equal angles, whichever diagonal cuts them
     const std::string cube =
         "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\nvt 0 0\nvt 1 0\nvt 1 1\nvt "
         "0 1\n"
@@ -222,7 +222,7 @@ TEST_CASE("computed normals are those of the surface, across texture seams, and 
         "4/1 1/2 5/3 8/4\n";
     const BaseMesh mesh = parse(cube);
     require_complete(mesh);
-    CHECK(mesh.vertices.size() == 20);  // four corners are spelt alike in two faces
+    CHECK(mesh.vertices.size() == 20);  // four corners have the same indices in two faces
     const EdgeCounts edges = count_edges(mesh);
     CHECK(edges.border == 0);
     CHECK(edges.odd == 0);
@@ -285,9 +285,9 @@ TEST_CASE("concave polygons are cut inside their outline") {
         {{0, 0}, {4, 0}, {4, 4}, {2, 1}, {0, 4}},                                          // a notch
         {{0, 0}, {2, 0}, {1, 0.5}, {1, 2}},                                                // a dart
         {{0, 0}, {1, 0}, {2, 0}, {2, 1}, {2, 2}, {1, 2}, {0, 2}, {0, 1}},                  // corners on straight edges
-        {{0, 0}, {1, 0}, {0, 1}, {0, 0.5}},                                                // a triangle with one more
+        {{0, 0}, {1, 0}, {0, 1}, {0, 0.5}},                                                // an extra corner
         {{0, 0}, {3, 0}, {3, 3}, {2, 3}, {2, 1}, {1, 1}, {1, 3}, {0, 3}},                  // a U
-        {{0, 0}, {4, 0}, {4, 4}, {0, 4}, {0, 0}, {1, 1}, {1, 3}, {3, 3}, {3, 1}, {1, 1}},  // a hole, bridged
+        {{0, 0}, {4, 0}, {4, 4}, {0, 4}, {0, 0}, {1, 1}, {1, 3}, {3, 3}, {3, 1}, {1, 1}},  // a hole with a bridge
         saws,
     };
     const double areas[] = {10, 1.25, 4, 0.5, 7, 12, 42};
@@ -344,7 +344,7 @@ TEST_CASE("a large convex polygon is cut without a corner that most of its trian
         for (const auto& t : mesh.triangles)
             for (const std::uint32_t i : t)
                 ++triangles[i];
-        // Two more each round, and at the end a fan of no more than 8 corners.
+        // Two more each round, and a fan of at most 8 corners at the end.
         const double rounds = std::ceil(std::log2(static_cast<double>(n) / 8));
         CHECK(static_cast<double>(*std::max_element(triangles.begin(), triangles.end())) <= 2 * rounds + 6);
         const EdgeCounts edges = count_edges(mesh);
@@ -379,7 +379,7 @@ TEST_CASE("limits are named") {
         many += "f 1 2 3\n";
     CHECK_THROWS_WITH(parse(many), StartsWith("test.obj:4000010: ") && Contains("4000000"));
 
-    // a comb, where every ear test looks at many corners, on a small allowance
+    // a comb, in which every ear test examines many corners, with a small work limit
     std::vector<glm::dvec3> comb;
     for (int i = 0; i < 1000; ++i)
         comb.push_back({i, i % 2 * 100, 0});
@@ -398,7 +398,7 @@ TEST_CASE("words that are not read are skipped and told") {
 
 namespace {
 
-/// A mesh or one of our two errors in printable words, and never anything else. Tells whether it loaded.
+/// Requires that the text gives a mesh or one of our two errors in printable words. Returns whether it loaded.
 bool survives(const std::string& text) {
     std::string message;
     try {

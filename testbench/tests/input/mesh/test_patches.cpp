@@ -88,7 +88,7 @@ TEST_CASE("patches: the teapot has 32 patches and 992 triangles, closed but for 
     CHECK_THAT(mesh.repairs.front(), Contains("32 triangle(s) of zero area"));
     const EdgeCounts edges = count_edges(mesh);
     CHECK(edges.odd == 0);
-    // The body's rim and the lid's, 16 edges round; the spout's two ends and the handle's two, 8 each.
+    // The rims of the body and the lid have 16 edges each, the two ends of spout and handle 8 each.
     CHECK(edges.border == 64);
     for (const BaseVertex& v : mesh.vertices)
         if (v.position.x == 0 && v.position.y == 0)
@@ -109,7 +109,7 @@ TEST_CASE("patches: the teapot is the one of the shared data") {
         position = std::max(position, largest_of(a.position - b.position));
         normal = std::max(normal, largest_of(a.normal - b.normal));
         texture += a.texture != b.texture;
-        // Where directions of dp/du cancel, at poles, rounding decides.
+        // At poles, where directions of dp/du cancel, rounding decides.
         const bool pole = b.position.x == 0 && b.position.y == 0;
         tangent = std::max(tangent, pole ? 0 : largest_of(a.tangent - b.tangent));
         handedness += !pole && a.handedness != b.handedness;
@@ -161,7 +161,7 @@ TEST_CASE("patches: a patch against Bernstein's polynomials") {
 }
 
 TEST_CASE("patches: a border shared the other way round, or by another side, is the same to the last bit") {
-    // Awkward numbers; the second patch meets the first's border u = 1 with its own border v = 0, turned round.
+    // Awkward numbers; the second patch meets border u = 1 of the first with its border v = 0, reversed.
     const auto at = [](int i, int j) {
         return glm::dvec3(0.1 * i + 0.07 * j, 0.3 * j + 0.01 * i * i, 0.123 * i * j - 0.37 * i + 1 / 3.0);
     };
@@ -183,7 +183,7 @@ TEST_CASE("patches: a border shared the other way round, or by another side, is 
 }
 
 TEST_CASE("patches: a collapsed border at any of the four sides has the limit's normal") {
-    // A quarter of a disk-like fan in the plane z = 2, apex at the collapsed side.
+    // A quarter of a disk-like fan in the plane z = 2, with the apex at the collapsed side.
     for (const int side : {0, 1, 2, 3}) {
         INFO(side);
         const BezierPatches patches = one_patch([side](int i, int j) {
@@ -195,7 +195,7 @@ TEST_CASE("patches: a collapsed border at any of the four sides has the limit's 
         require_complete(mesh);
         CHECK(mesh.triangles.size() == 28);
         CHECK(mesh.dropped_degenerate == 4);
-        CHECK(mesh.repairs.size() <= 2);  // the triangles, and perhaps a pole
+        CHECK(mesh.repairs.size() <= 2);  // about the triangles, and perhaps a pole
         const double up = mesh.vertices.back().normal.z;
         CHECK(std::abs(up) == 1);
         for (const BaseVertex& v : mesh.vertices)
@@ -275,7 +275,7 @@ TEST_CASE("patches: hostile text ends in one message with its line") {
         INFO(bad);
         CHECK_THAT(parse_error(with_line(text, 7, "1," + bad + ",3")), Contains("p.txt:7: '" + bad + "'"));
     }
-    // Cut off anywhere, it is refused, but for its last number's last digits.
+    // Truncated anywhere it is refused, except within the last digits of its last number.
     const std::size_t whole = text.find_last_of(',') + 1;
     for (std::size_t size = 0; size < whole; ++size) {
         INFO(size);

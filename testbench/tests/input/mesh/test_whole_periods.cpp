@@ -11,7 +11,7 @@
 #include "testbench/setup/mesh/whole_periods.h"
 #include "testbench/tests/support/refusals.h"
 
-// Texture coordinates that tile: brought down by whole periods, without a change to the mesh that comes of it.
+// Texture coordinates that tile: reduced by whole periods, without a change to the resulting mesh.
 
 using namespace tessera;
 using Catch::Contains;
@@ -36,7 +36,7 @@ struct Run {
         mesh.sort();
     }
 
-    /// Base triangle, P' and N' of every triangle, in an order that texture coordinates have no part in.
+    /// Base triangle, P' and N' of every triangle, in an order that does not depend on texture coordinates.
     auto surface() const {
         using Corner = std::array<std::int32_t, 6>;
         std::vector<std::tuple<std::uint32_t, Corner, Corner, Corner>> result;

@@ -109,7 +109,7 @@ TEST_CASE("bake: over a cylinder, every texel displaces its point onto the spher
     const double pi = std::acos(-1.0);
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
-            // Base point and normal on the chord between two columns, without a look at the mesh.
+            // Base point and normal on the chord between two columns, computed without the mesh.
             const double u = (x + 0.5) / width * columns, z = 2 * (y + 0.5) / height - 1;
             const double from = std::floor(u), part = u - from;
             const auto around = [&](double column) {
@@ -119,7 +119,7 @@ TEST_CASE("bake: over a cylinder, every texel displaces its point onto the spher
             const glm::dvec3 p = (1 - part) * around(from) + part * around(from + 1) + glm::dvec3(0, 0, z);
             const glm::dvec3 n = glm::normalize(glm::dvec3(p.x, p.y, 0));
             REQUIRE(std::abs(glm::length(p + at(map, x, y) * n - centre) - radius) < 1e-13);
-            REQUIRE(std::abs(at(map, x, y)) < 1);  // the nearer of both: the other is across the cylinder
+            REQUIRE(std::abs(at(map, x, y)) < 1);  // the nearer root; the other is across the cylinder
         }
 }
 
@@ -136,14 +136,14 @@ TEST_CASE("bake: root chooses among the two sides of a quadric") {
 }
 
 TEST_CASE("bake: texels without a triangle take the nearest covered one's value, round the map where it repeats") {
-    // One triangle over the lower left; its plane z = 0, texture = position.
+    // One triangle over the lower left part; its plane is z = 0, and texture = position.
     const std::string text =
         "v 0 0 0\nv 0.5 0 0\nv 0 0.5 0\nvt 0 0\nvt 0.5 0\nvt 0 0.5\nvn 0 0 1\nf 1/1/1 2/2/1 3/3/1\n";
     const BaseMesh mesh = parse_obj(text, "t.obj");
     QuadricSurface ramp;  // z = x + 10 y
     ramp.quadric = {{0, 0, 0}, glm::dmat3(0), {1, 10, -1}, 0};
     const BakedMap map = bake_over_mesh(ramp, mesh, {}, 4, 4);
-    // Centres within: (0,0), (1,0), (0,1); the last two on the long edge.
+    // Centres inside: (0,0), (1,0), (0,1); the last two lie on the long edge.
     CHECK(map.uncovered == 13);
     CHECK(at(map, 0, 0) == Approx(1.375));
     CHECK(at(map, 1, 0) == Approx(1.625));
@@ -162,11 +162,11 @@ TEST_CASE("bake: where triangles overlap the first counts, and it is told") {
         "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvn 0 0 1\n"
         "f 1/1/1 2/2/1 3/3/1 4/4/1\nf 5/1/1 6/2/1 7/3/1 8/4/1\n";
     const BakedMap map = bake_over_mesh(sphere(9), parse_obj(sheets, "t.obj"), {}, 5, 4);
-    CHECK(map.overlaps >= 16);  // those on the diagonals are on borders only
+    CHECK(map.overlaps >= 16);  // texels on the diagonals are on borders only
     CHECK(map.overlaps <= 20);
     for (const double value : map.values)
         CHECK(value > 8.8);  // from z = 0
-    // A mesh that goes round the repeated map twice has every texel in two triangles.
+    // A mesh that covers the repeated map twice has every texel in two triangles.
     BaseMesh twice = make_plane(2, 1, 4, 2);
     for (BaseVertex& v : twice.vertices)
         v.texture.x = 2 * v.texture.x - 1;

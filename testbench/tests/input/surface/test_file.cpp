@@ -170,7 +170,7 @@ TEST_CASE("surface file: faults of a NURBS patch are told with file and line") {
     for (const std::string bad : {"0", "-1", "nan", "1e10", "1e-10"})
         CHECK_THAT(error_of(nurbs("weights", "weights = [[1, 1, 1, 1], [1, " + bad + ", 1, 1]]")),
                    Contains("s.toml:7:30:") && Contains("`weights`"));
-    // Inside, a knot may be there `degree` times: a crease. Once more would tear it.
+    // An inner knot may be repeated `degree` times, which gives a crease. Once more would split the surface.
     CHECK(error_of("[nurbs]\ndegree_u = 1\ndegree_v = 1\nknots_u = [0, 0, 1, 2, 2]\nknots_v = [0, 0, 1, "
                    "1]\nheights = [[0, 1, 2], [0, 1, 2]]\n")
               .empty());

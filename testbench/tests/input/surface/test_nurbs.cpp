@@ -10,7 +10,7 @@ using namespace tessera;
 
 namespace {
 
-/// Knots of a curve of `count` control points: random, some repeated, ends repeated or not.
+/// Knots of a curve of `count` control points: random, some repeated, with the ends repeated or not.
 std::vector<double> random_knots(std::size_t degree, std::size_t count) {
     std::vector<double> knots;
     double at = 0;
@@ -34,7 +34,7 @@ std::vector<double> random_numbers(std::size_t count, int low, int high) {
     return numbers;
 }
 
-/// De Boor's algorithm: no basis functions, the control points themselves are mixed, level by level.
+/// De Boor's algorithm: without basis functions, by repeated interpolation of the control points.
 double de_boor(const std::vector<double>& knots, std::size_t degree, const std::vector<double>& control, double t) {
     std::size_t span = degree;
     for (std::size_t k = degree; k < control.size(); ++k)
@@ -51,7 +51,7 @@ double de_boor(const std::vector<double>& knots, std::size_t degree, const std::
     return d[degree];
 }
 
-/// The same for a rational patch: along u in every row, then along v, numerator and denominator apart.
+/// The same for a rational patch: along u in every row, then along v, with numerator and denominator separate.
 double de_boor(const NurbsPatch& patch, double u, double v) {
     std::vector<double> numerators, denominators;
     for (std::size_t j = 0; j < patch.rows; ++j) {
@@ -154,7 +154,7 @@ TEST_CASE("nurbs: the two coordinates of a rational quarter circle lie on the ci
         REQUIRE(std::abs(std::hypot(height_of(x, u, 0.3), height_of(y, u, 0.3)) - 1) < 4e-16);
     }
     CHECK(height_of(x, 0.5, 1) == Approx(half).margin(1e-15));
-    // Without the weights it is a parabola.
+    // Without the weights this is a parabola.
     const NurbsPatch p = bezier(3, 2, {1, 1, 0, 1, 1, 0}, std::vector<double>(6, 1.0)),
                      q = bezier(3, 2, {0, 1, 1, 0, 1, 1}, std::vector<double>(6, 1.0));
     CHECK(std::hypot(height_of(p, 0.5, 0), height_of(q, 0.5, 0)) > 1.05);

@@ -48,7 +48,7 @@ TEST_CASE("quadric: heights of the named shapes are their equations solved by ha
     CHECK(height(Shape::cylinder, 99, y, Root::highest, 0).value() ==
           Approx(3 + 0.5 * std::sqrt(1 - 0.09)).epsilon(1e-15));
     CHECK_FALSE(height(Shape::ellipsoid, 3.01, 2, Root::highest));
-    CHECK(height(Shape::ellipsoid, 3, 2, Root::highest).value() == Approx(3));  // touches
+    CHECK(height(Shape::ellipsoid, 3, 2, Root::highest).value() == Approx(3));  // touches at one point
     CHECK(make_quadric(Shape::paraboloid, {0, 0, 0}, {1, 1, -2}, 2, 0).linear.z == -0.5);
 }
 
@@ -77,7 +77,7 @@ TEST_CASE("quadric: what is found lies on the quadric, and what is not is not th
                 RC_ASSERT(std::abs(value_at(q, origin + t * n)) < 1e-12 * terms);
             }
         } else {
-            // A quadratic without roots has one sign.
+            // A quadratic function without roots has a constant sign.
             const double sign = value_at(q, origin);
             for (int k = -50; k <= 50; ++k)
                 RC_ASSERT(value_at(q, origin + 0.3 * k * n) * sign >= -1e-9);
@@ -96,5 +96,5 @@ TEST_CASE("quadric: both roots as near, the one along the normal counts, and far
     CHECK(intersect(plane, {0, 0, 0}, {0, 0, 1}, Root::highest).value() == 1e6);
     CHECK_FALSE(intersect(plane, {0, 0, -1}, {0, 0, 1}, Root::highest));
     CHECK_FALSE(intersect(plane, {0, 0, 0}, {1, 0, 0}, Root::highest));
-    CHECK(intersect(plane, {0, 0, 1e6}, {1, 0, 0}, Root::highest).value() == 0);  // within it
+    CHECK(intersect(plane, {0, 0, 1e6}, {1, 0, 0}, Root::highest).value() == 0);  // lies in the plane
 }

@@ -14,7 +14,7 @@
 #include "testbench/tests/modules/named_machine.h"
 #include "testbench/tests/support/timed_checks.h"
 
-// A platform's presets become a Design. The keys of a job file are the second opinion on names, units and ranges.
+// Presets of a platform become a Design. Names, units and ranges are compared with the keys of a job file.
 
 using namespace tessera;
 using namespace tessera::testing;
@@ -33,7 +33,7 @@ void preset(const std::string& name, const std::string& json) {
     global_broker().set_preset_cci_value(name, cci::cci_value::from_json(json));
 }
 
-/// The design of these presets, below a prefix that no other call has.
+/// The design for these presets, with a prefix that is unique to this call.
 Design design_of(const std::map<std::string, std::string>& presets, const Design& defaults = {}) {
     static int calls = 0;
     const std::string prefix = "call_" + std::to_string(calls++);
@@ -47,7 +47,7 @@ std::string json_string(std::string_view name) {
     return '"' + std::string(name) + '"';
 }
 
-/// Every parameter's value, as JSON has it.
+/// Every parameter's value, as JSON.
 std::map<std::string, std::string> values_of(const Design& design) {
     std::map<std::string, std::string> values{
         {"mode", json_string(name_of(design.transport))},
@@ -74,7 +74,7 @@ std::string integer(double value) {
     return std::to_string(static_cast<std::int64_t>(value));
 }
 
-/// Values that a key may have: an integer's least and most, a choice's first and last.
+/// Extreme values of a key: the lowest and highest integer, the first and last choice.
 std::pair<std::string, std::string> ends_of(const tessera::Key& key) {
     if (key.kind == KeyKind::choice)
         return {json_string(key.choices.front()), json_string(key.choices.back())};
@@ -92,7 +92,7 @@ std::string error_of(const std::string& name, const std::string& json) {
     return "";
 }
 
-/// Its own broker, and parameters below its name.
+/// A module with its own broker, and the parameters below its name.
 struct Platform : sc_core::sc_module {
     cci_utils::broker broker{"broker"};
     cci::cci_broker_handle handle = cci::cci_register_broker(broker);

@@ -12,8 +12,8 @@ inline constexpr std::uint32_t donut_side = 256;
 /// Texels per world unit: the plane is [-1, 1] x [-1, 1] in the default position format.
 inline constexpr double texels_per_unit = donut_side / 2.0;
 
-/// The half-donut map on the plane [-1, 1]^2, scale 1/4 so that it is round; View Test off. Thresholds as the
-/// paper's author would give them: NT a component of the normal, SHT codes times texels.
+/// The half-donut map on the plane [-1, 1]^2, with scale 1/4 so that it is round; View Test off. Thresholds in the
+/// paper's units: NT a component of the normal, SHT codes times texels.
 inline Machine half_donut_machine(double normal_threshold, double summed_height_threshold) {
     const HeightMap map = half_donut_map(donut_side, donut_side);
     datapath::Registers registers;
@@ -49,7 +49,7 @@ inline Machine half_donut_machine(double normal_threshold, double summed_height_
     return Machine(registers, std::move(tables));
 }
 
-/// A vertex of that plane at texture coordinates given in texels.
+/// A vertex of this plane at texture coordinates given in texels.
 inline datapath::Vertex plane_vertex(double u, double v) {
     datapath::Vertex vertex;
     vertex.texture = {static_cast<std::uint32_t>(std::lround(u * 4096)),
@@ -69,7 +69,7 @@ inline datapath::Triangle triangle_of(const datapath::Vertex& a, const datapath:
     return triangle;
 }
 
-/// Two triangles to each of 3 x 3 squares.
+/// 3 x 3 squares of two triangles each.
 inline std::vector<datapath::Triangle> plane_of_18() {
     const auto line = [](int k) { return k * double{donut_side} / 3; };
     std::vector<datapath::Triangle> base;

@@ -7,7 +7,7 @@ namespace tessera::testing {
 /// Wide enough for every product of the datapath.
 __extension__ using Wide = __int128;
 
-/// value / 2^shift, rounded to nearest, a tie upwards: by division, not by shifting.
+/// value / 2^shift, rounded to nearest, ties upwards: by division, without shifts.
 inline Wide nearest(Wide value, int shift) {
     const Wide unit = Wide{1} << shift;
     Wide quotient = value / unit;

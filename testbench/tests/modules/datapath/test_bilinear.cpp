@@ -23,7 +23,7 @@ Formats formats_of(int integer, int fraction, int displacement, int normal = 16)
     return formats;
 }
 
-/// A map whose entries are its texels' values, one a byte address.
+/// A map whose entries are its texels' values, one per byte address.
 struct TestMap {
     MapGeometry geometry;
     std::vector<std::uint64_t> entries;
@@ -52,7 +52,7 @@ struct TestMap {
                               mirror.entries.begin() + y * geometry.width);
         return mirror;
     }
-    /// u and v exchanged.
+    /// With u and v exchanged.
     TestMap transposed() const {
         TestMap result{{geometry.height, geometry.width, geometry.address_v, geometry.address_u}, {}};
         for (std::uint32_t x = 0; x < geometry.width; ++x)
@@ -62,8 +62,8 @@ struct TestMap {
     }
 };
 
-/// 4^(fraction + 1) times the bilinear surface through the texels' centres, as a sum over the whole neighbourhood: a
-/// texel's weight is what its square of one texel around its centre leaves to t on each axis.
+/// 4^(fraction + 1) times the bilinear surface through the texels' centres, as a sum over the whole neighbourhood. On
+/// each axis a texel's weight is one texel minus the distance of t from its centre, or 0.
 template <class Value>
 Wide exact(const TestMap& map, const TexCoord& t, int fraction, Value value) {
     const Wide texel = Wide{2} << fraction;
@@ -81,7 +81,7 @@ Wide exact(const TestMap& map, const TexCoord& t, int fraction, Value value) {
 
 constexpr std::array<AddressMode, 2> modes{AddressMode::clamp, AddressMode::repeat};
 
-/// Every size of a map up to 4 x 3 with random codes, both modes on both axes.
+/// Every map size up to 4 x 3 with random codes, with both address modes on both axes.
 template <class Check>
 void each_map(Random& random, std::uint64_t highest, std::uint32_t most, Check check) {
     for (std::uint32_t width = 1; width <= most; ++width)
@@ -98,7 +98,7 @@ void each_map(Random& random, std::uint64_t highest, std::uint32_t most, Check c
 
 template <class Check>
 void each_coordinate(const TestMap& map, const Formats& formats, Check check) {
-    // A repeated map is addressed beyond its first period, up to the format's border.
+    // A repeated map is addressed beyond its first period, up to the limit of the format.
     const std::uint32_t border = 1u << (formats.texture.bits - 1);
     const auto most = [&](std::uint32_t size, AddressMode mode) {
         return mode == AddressMode::repeat ? border : std::min(border, size << formats.texture.fraction);

@@ -18,7 +18,7 @@ Vector real(const Direction& d, int fraction) {
     return {std::ldexp(d.x, -fraction), std::ldexp(d.y, -fraction), std::ldexp(d.z, -fraction)};
 }
 
-/// N' in doubles, straight from the definition, and the length of the sum before normalising.
+/// N' in doubles, directly from the definition, and the length of the sum before normalisation.
 Vector reference(const Vector& n, const Vector& t, int handedness, const Vector& m, double& length) {
     const Vector b{handedness * (n[1] * t[2] - n[2] * t[1]), handedness * (n[2] * t[0] - n[0] * t[2]),
                    handedness * (n[0] * t[1] - n[1] * t[0])};
@@ -69,7 +69,7 @@ TEST_CASE("bump: a flat map's normal gives N back") {
             const Direction bumped = bump(n, t, random.coin() ? 1 : -1, flat, formats, saturations);
             worst = std::max({worst, std::abs(bumped.x - n.x), std::abs(bumped.y - n.y), std::abs(bumped.z - n.z)});
         }
-        // N comes rounded, so normalising it again may move it by its own error of length, sqrt(3)/2 LSB
+        // N is rounded, so normalising it again may move it by its error of length, sqrt(3)/2 LSB
         CHECK(worst <= 1);
         CHECK(saturations.total() == 0);
     }
@@ -86,13 +86,13 @@ TEST_CASE("bump: against doubles, every legal normal format") {
             double length = 0;
             const Vector expected =
                 reference(real(n, fraction), real(t, fraction), handedness, real(m, fraction), length);
-            // Rounding of B: half an LSB times a factor of the map's normal, per component; of the sum: an
-            // eighth (two guard bits). Both are divided by the sum's length, the vector's own shortening
-            // costs as much again along it; then the result's rounding.
+            // Rounding of B: half an LSB times a factor of the map's normal, per component; of the sum: an eighth (two
+            // guard bits). Both are divided by the sum's length, and the error of that length adds as much again along
+            // the vector; then the result is rounded.
             const double one = std::ldexp(1.0, fraction);
             const double before = std::abs(m.y / one) * 0.5 + 0.125;
             if (length * one < 4 * before)
-                continue;  // N and T nearly parallel and cancelling: no direction to speak of
+                continue;  // N and T are nearly parallel and cancel: no meaningful direction
             const double bound = 0.5 + 2.8 * before / length + 0.01;
             const double error = off(bump(n, t, handedness, m, formats, saturations), expected, fraction);
             if (error > bound)

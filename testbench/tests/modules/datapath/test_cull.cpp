@@ -11,7 +11,7 @@ using namespace tessera::testing;
 
 namespace {
 
-/// Twice the signed area, by the sum over the corners (not by differences from one).
+/// Twice the signed area, by the sum over the corners, without differences.
 Wide doubled_area(const ScreenPosition& a, const ScreenPosition& b, const ScreenPosition& c) {
     const auto cross = [](const ScreenPosition& p, const ScreenPosition& q) {
         return Wide{p.x} * q.y - Wide{p.y} * q.x;
@@ -37,7 +37,7 @@ TEST_CASE("culling: sign of the exact area, screen positions of 8 to 32 bits") {
         };
         const ScreenPosition a = point(), b = point();
         check(a, b, point());
-        // nearly edge-on: the third vertex beside the first two's midpoint
+        // nearly edge-on: the third vertex beside the midpoint of the first two
         ScreenPosition c{static_cast<std::int32_t>((std::int64_t{a.x} + b.x) >> 1),
                          static_cast<std::int32_t>((std::int64_t{a.y} + b.y) >> 1), 0, true};
         check(a, b, c);

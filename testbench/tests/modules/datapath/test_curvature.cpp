@@ -24,7 +24,7 @@ CurvatureEntry random_entry(Random& random) {
             random.integer32(-128, 127), random.natural(0, 255)};
 }
 
-/// The formula of the header in real numbers, u and v as rounded.
+/// The header's formula in real numbers, with rounded u and v.
 double expected_measure(const CurvatureEntry& entry, double du, double dv, int level) {
     const double u = std::floor(8 * std::abs(du) / std::exp2(level)),
                  v = std::floor(8 * std::abs(dv) / std::exp2(level));

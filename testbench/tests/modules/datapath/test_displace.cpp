@@ -16,7 +16,7 @@ namespace {
 constexpr std::int64_t greatest_int32 = std::numeric_limits<std::int32_t>::max();
 constexpr std::int64_t lowest = std::numeric_limits<std::int32_t>::min();
 
-/// One component bit for bit, roundings as the header names them.
+/// One component bit for bit, with the roundings that the header names.
 Wide reference(std::int64_t p, std::int64_t n, std::uint32_t code, const DisplacementParameters& by,
                const Formats& formats) {
     const Wide height = nearest(Wide{by.scale} * code, formats.displacement.bits) + by.bias;
@@ -36,7 +36,7 @@ void check(const Position& p, const Direction& n, std::uint32_t code, const Disp
         if (result[k] != fits)
             FAIL("base " << base[k] << ", normal " << normal[k] << ", code " << code << ", scale " << by.scale
                          << ", bias " << by.bias << " gives " << result[k]);
-        // the stated bound, against the value without any rounding between
+        // the stated bound, against the value without intermediate rounding
         const long double ideal =
             static_cast<long double>(base[k]) +
             (std::ldexp(static_cast<long double>(by.scale) * code, -formats.displacement.bits) + by.bias) *

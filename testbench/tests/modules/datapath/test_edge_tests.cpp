@@ -77,7 +77,7 @@ TEST_CASE("Summed Height Test: |S_ij / 2 - (S_i + S_j) / 4| above the threshold,
                 const double value =
                     std::abs(static_cast<double>(ij) / 2 - (static_cast<double>(i) + static_cast<double>(j)) / 4);
                 for (std::uint64_t threshold = 0; threshold < 80; ++threshold) {
-                    // the register holds four times the paper's threshold, which so has two fraction bits
+                    // the register holds four times the paper's threshold, which gives it two fraction bits
                     parameters.summed_height_unit = SummedHeightUnit::sum;
                     parameters.summed_height_threshold = threshold;
                     if (summed_height_test(i, j, ij, {7, 9}, parameters) !=

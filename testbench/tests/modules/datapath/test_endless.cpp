@@ -17,9 +17,9 @@ namespace {
 constexpr double normal_threshold = 0.2;
 constexpr double summed_height_threshold = 5000;
 
-/// Its long edge, from the first vertex to the second, never splits; nor does its median's, from (80.667, 35.667) to
+/// The long edge, from the first vertex to the second, never splits. Nor does its median's, from (80.667, 35.667) to
 /// (82.667, 34.667), along which ever thinner triangles split their two other edges in turn, until rounding turns them
-/// over and round they go.
+/// over and the cycle repeats.
 Triangle endless_triangle() {
     return triangle_of(plane_vertex(78.667, 36.0), plane_vertex(82.667, 34.667), plane_vertex(82.667, 35.333));
 }
@@ -64,17 +64,17 @@ TEST_CASE("endless case: without the generation test it never ends, for the mach
     constexpr int period = 8;
     for (int k = 0; k < period; ++k)
         work.step([](const Triangle&) {});
-    // One triangle after another is handled, and nothing but the triangles waiting bears on what comes next:
-    // what happened once happens for ever.
+    // Triangles are processed in sequence, and the future depends on the waiting triangles only: once a state recurs,
+    // it recurs for ever.
     CHECK(same_bits(work.waiting, state));
     CHECK(work.finished > finished);
 
     work.run(200'000);
     CHECK(work.finished == 200'000);
     CHECK(!work.waiting.empty());
-    CHECK(work.largest_generation == 255);  // saturated; what is in the queue has been split far more often
+    CHECK(work.largest_generation == 255);  // saturated; the triangles in the queue have been split far more often
 
-    // four bits, the default: the same triangles, their generations saturate
+    // four bits, the default: the same triangles with saturated generations
     machine.registers.formats.generation_bits = 4;
     machine.saturations = {};
     WorkList narrow(machine, {endless_triangle()});
@@ -112,5 +112,5 @@ TEST_CASE("endless case: the plane of 18, with the generation test and without")
     endless.run(200'000);
     CHECK(endless.finished == 200'000);
     CHECK(!endless.waiting.empty());
-    CHECK(endless.largest_generation > 50);  // breadth first: no branch has got far yet
+    CHECK(endless.largest_generation > 50);  // breadth first: no branch is deep yet
 }

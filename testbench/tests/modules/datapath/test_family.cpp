@@ -5,7 +5,7 @@
 #include <map>
 #include <utility>
 
-// The new edges of a triangle's children: each once, and none that its parent had whole.
+// The new edges of a triangle's children: each occurs once, and none is a whole edge of the parent.
 
 using namespace tessera::datapath;
 
@@ -17,7 +17,7 @@ Ends sorted(int a, int b) {
     return {std::min(a, b), std::max(a, b)};
 }
 
-/// The ends of a child's edges that are no edge of the parent, and how often each occurs.
+/// The ends of the children's edges that are no edges of the parent, and how often each occurs.
 std::map<Ends, int> new_edges(const ChildIndices& indices) {
     std::map<Ends, int> found;
     for (int c = 0; c < indices.count; ++c) {

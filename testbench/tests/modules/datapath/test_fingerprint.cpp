@@ -8,7 +8,7 @@
 #include "testbench/prove/random_edges/datapath_random.h"
 #include "testbench/prove/random_edges/datapath_random_tables.h"
 
-/// The same bits from every compiler at every optimisation level: integer arithmetic only, here as there.
+/// Integer arithmetic only, so every compiler must give the same bits at every optimisation level.
 using namespace tessera::datapath;
 using namespace tessera::testing;
 
@@ -104,6 +104,6 @@ TEST_CASE("fingerprint: a hundred thousand random triangles give the recorded bi
     for (const std::uint64_t count :
          {s.displaced_position, s.normal, s.screen_position, s.screen_normal, s.degenerate_normal})
         hash.add(static_cast<std::int64_t>(count));
-    // A change here is a change of the machine's results: let it be one that was meant.
+    // A change here changes the machine's results: it must be intended.
     CHECK(hash.value() == 0x0dabae49d3460c44U);
 }

@@ -70,7 +70,7 @@ TEST_CASE("round_shift: nearest, a tie upwards") {
     Random random(1);
     for (int k = 0; k < 1'000'000; ++k) {
         const int shift = static_cast<int>(random.integer(0, 62));
-        // up to the edge of what the header allows: |value| + half fits 64 bits
+        // up to the header's limit: |value| + half fits 64 bits
         const std::int64_t half = shift == 0 ? 0 : std::int64_t{1} << (shift - 1);
         const std::int64_t value = random.any_size(std::numeric_limits<std::int64_t>::max() - half);
         if (round_shift(value, shift) != nearest(value, shift))

@@ -23,7 +23,7 @@ double real(std::int32_t value) {
     return value;
 }
 
-/// The definition again, in another arithmetic: doubles hold every number here exactly.
+/// The definition again, in doubles, which hold every number here exactly.
 bool reference(const Direction& i, const Direction& j, const Direction& ij, const TestParameters& parameters) {
     const auto cosine = [&](const Direction& n) {
         return real(n.x) * parameters.half_vector[0] + real(n.y) * parameters.half_vector[1] +
@@ -109,12 +109,12 @@ TEST_CASE("Highlight Test: the border itself is outside, a single LSB decides") 
     };
     const std::int64_t border = std::int64_t{1000} * 16384;
     for (const auto& [i, j, ij] : {std::array{on, off, off}, std::array{off, on, off},
-                                   std::array{off, off, on}}) {  // each of the three is enough
+                                   std::array{off, off, on}}) {  // each of the three suffices
         CHECK(asks(i, j, ij, border - 1, 1999));
         CHECK_FALSE(asks(i, j, ij, border, 1999));
         CHECK_FALSE(asks(i, j, ij, border - 1, 2000));
     }
-    // the largest sum there is, of the widest normals
+    // the largest possible sum, of the widest normals
     const std::int32_t lowest = -(1 << 17);
     const Direction largest{lowest, lowest, lowest};
     const auto widest = parameters_of({lowest, lowest, lowest}, 3 * (std::int64_t{1} << 34) - 1, 0);
@@ -200,7 +200,7 @@ TEST_CASE("queue entry: one bit more with a Highlight Test, none without") {
         CHECK(back.finished == triangle.finished);
         CHECK(back.base == triangle.base);
         CHECK(back.vertices[2].position == triangle.vertices[2].position);
-        // without the bit a triangle of the Highlight Test does not fit, and the writer says so
+        // without this bit a triangle of the Highlight Test does not fit, and the writer reports it
         CHECK(pack_triangle(triangle, without, bytes.data()) == ((triangle.split_by & highlight_bit) == 0));
     }
 }
@@ -209,7 +209,7 @@ TEST_CASE("children say that the Highlight Test split their parent") {
     TrianglePass pass;
     pass.split = 1;
     pass.edges[0].tests = highlight_bit | gating_tests;
-    pass.edges[1].tests = normal_bit | view_bit;  // not split: does not count
+    pass.edges[1].tests = normal_bit | view_bit;  // not split: not counted
     int children = 0;
     Saturations saturations;
     tessellate(pass, Triangulation::shorter, Formats{}, saturations, [&](const Triangle& child) {

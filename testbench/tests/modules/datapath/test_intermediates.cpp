@@ -11,14 +11,14 @@ using namespace tessera::testing;
 
 namespace {
 
-/// The values seen of an intermediate.
+/// The range of values that an intermediate takes.
 struct Reach {
     Wide low = 0, high = 0;
     void see(Wide value) {
         low = std::min(low, value);
         high = std::max(high, value);
     }
-    /// Bits that hold them; unsigned if none is negative.
+    /// Number of bits that hold them; unsigned if none is negative.
     int bits() const {
         for (int bits = 1;; ++bits) {
             const Wide beyond = Wide{1} << (low < 0 ? bits - 1 : bits);
@@ -28,7 +28,7 @@ struct Reach {
     }
 };
 
-/// Formats as narrow and as wide as a job may have them, with few and many fraction bits.
+/// The narrowest and widest formats that a job may have, with few and many fraction bits.
 std::vector<Formats> formats_to_try() {
     std::vector<Formats> all{Formats{}};
     const auto vary = [&](const auto& change, const auto&... choices) {
@@ -58,7 +58,7 @@ std::vector<Formats> formats_to_try() {
     return all;
 }
 
-/// No width too small; in the default formats, none more than a bit too large.
+/// No width may be too small; in the default formats none may exceed the need by more than one bit.
 void check(const char* function, const Width& width, const Reach& reach, bool tight) {
     INFO(function << ": " << width.name << " has " << width.bits << " bits, " << reach.bits() << " are needed");
     CHECK(reach.bits() <= width.bits);
@@ -97,7 +97,7 @@ void check_displace(const Formats& f, bool tight) {
     check("displace", widths.sum, sum, tight);
 }
 
-/// The corners of the operands' range: codes, and normals' components; every other value lies between them.
+/// The corners of the operands' range of codes and normals' components; all other values lie between them.
 void check_bilinear(const Formats& f, bool tight) {
     const BilinearWidths widths{f};
     const Wide one = Wide{1} << weight_bits(f);
@@ -312,7 +312,7 @@ void check_filtered_tests(const Formats& f, bool tight) {
     check("mipmap_test", MipmapWidths{f}.heights, heights, tight);
 }
 
-/// Of the Rank Test as the viewer sees it; the eye in a corner of its range, the position in the opposite one.
+/// The Rank Test's view part, with the eye in a corner of its range and the position in the opposite one.
 void check_rank_view(const Formats& f, bool tight) {
     const RankViewWidths widths{f};
     Reach away, pair, three, times_11, times_9, ends, radius, deepest, level, rank, limit;

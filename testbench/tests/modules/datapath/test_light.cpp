@@ -30,7 +30,7 @@ TEST_CASE("light: against doubles, 0..255, any operands, every legal normal form
         // truncated twice: the cosine by an LSB of the normal's format, then the intensity
         const double low = ideal - 1 - (256 - parameters.ambient) * std::ldexp(1.0, -fraction);
         const int got = light(n, parameters, formats, saturations);
-        // beyond 8 bits, by the integers themselves: two shifts that round down
+        // beyond 8 bits, with the integers themselves: two shifts that round down
         const std::int64_t sum = std::int64_t{n.x} * parameters.direction[0] +
                                  std::int64_t{n.y} * parameters.direction[1] +
                                  std::int64_t{n.z} * parameters.direction[2];

@@ -15,7 +15,7 @@ TEST_CASE("normal map entry: packed and unpacked, every width from 4 to 21") {
             const std::uint64_t entry = pack_normal(n, bits);
             if (!(unpack_normal(entry, bits) == n) || entry >> (3 * bits) != 0)
                 FAIL(bits << " bits: " << n.x << " " << n.y << " " << n.z);
-            // what lies beyond the entry in the word that was read must not matter
+            // bits of the word beyond the entry must not matter
             if (bits < 21 && !(unpack_normal(entry | ~std::uint64_t{0} << (3 * bits), bits) == n))
                 FAIL(bits << " bits, with ones above: " << n.x << " " << n.y << " " << n.z);
         };

@@ -65,7 +65,7 @@ TEST_CASE("normalise: every legal normal format, any length of vector up to 31 b
             if (x != 0 || y != 0 || z != 0)
                 check(x, y, z, formats);
         }
-        constexpr std::int64_t largest = 0x7fffffff;  // 31 bits: all that x * x and the products allow for
+        constexpr std::int64_t largest = 0x7fffffff;  // 31 bits: the limit of x * x and the products
         for (const std::int64_t x : {-largest, std::int64_t{-1}, std::int64_t{0}, std::int64_t{1}, largest})
             for (const std::int64_t y : {-largest, std::int64_t{0}, std::int64_t{1}, largest})
                 for (const std::int64_t z : {-largest, std::int64_t{1}, largest})

@@ -33,7 +33,7 @@ Formats make_formats(const Bits& bits) {
     return formats;
 }
 
-/// The defaults, the narrowest and the widest of a job and of the packing, no two widths alike, and random ones.
+/// The defaults, the narrowest and widest of a job and of the packing, one with distinct widths, and random ones.
 std::vector<Formats> many_formats() {
     std::vector<Formats> all = {Formats{},
                                 make_formats({8, 8, 6, 2, 8, 1}),
@@ -63,7 +63,7 @@ struct ExpectedField {
     std::vector<std::int64_t> misfits;  ///< of the values its variable may hold
 };
 
-/// The values that `Number` holds and `bits` do not: those next to the range, and the ends.
+/// Values that `Number` holds but `bits` bits do not: those next to the range, and the extremes.
 template <class Number>
 std::vector<std::int64_t> misfits_of(std::int64_t lowest, std::int64_t highest) {
     const std::int64_t least = std::numeric_limits<Number>::min(), most = std::numeric_limits<Number>::max();
@@ -158,7 +158,7 @@ std::vector<ExpectedField> fields_of(const Formats& formats) {
         add_vector(fields, vertex + "N's", normal, k, &Vertex::screen_normal);
     }
     fields.push_back(number<std::uint8_t>("split by", 2, [](Triangle& t) -> std::uint8_t& { return t.split_by; }));
-    // codes of 3 bits stand for 4, 8, 16: a quarter of the value
+    // codes of 3 bits represent 4, 8, 16: a quarter of the value
     ExpectedField stopped_by{"stopped by",
                              3,
                              0,
@@ -174,7 +174,7 @@ std::vector<ExpectedField> fields_of(const Formats& formats) {
     return fields;
 }
 
-/// The reference: '0' and '1' in order, the lowest bit first, by halving.
+/// The reference: '0' and '1' in order, lowest bit first, by halving.
 std::string bits_of(const Triangle& triangle, const std::vector<ExpectedField>& fields) {
     std::string text;
     for (const ExpectedField& field : fields) {
@@ -191,7 +191,7 @@ std::string bits_of(const Triangle& triangle, const std::vector<ExpectedField>& 
 constexpr unsigned char guard = 0xa5;
 constexpr std::size_t guard_bytes = 16;
 
-/// A packed triangle between two fences, in memory that was not clean.
+/// A packed triangle between two guard areas, in memory with random content.
 struct Packed {
     explicit Packed(const Formats& formats)
         : size(packed_triangle_bytes(formats) + packed_triangle_tag_bytes), memory(size + 2 * guard_bytes, guard) {}
@@ -235,7 +235,7 @@ Triangle random_triangle(Random& random, const std::vector<ExpectedField>& field
     return triangle;
 }
 
-/// Packed as the reference says, nothing else written, and back again.
+/// Packs as the reference does, writes nothing else, and unpacks to the same triangle.
 void check_round_trip(const Triangle& triangle, const Formats& formats, const std::vector<ExpectedField>& fields) {
     Packed packed(formats);
     if (!pack_triangle(triangle, formats, packed.bytes()))

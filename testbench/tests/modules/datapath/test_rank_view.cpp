@@ -22,7 +22,7 @@ Formats with_distances(int rank_bits = 16, int bound_bits = 16) {
     return formats;
 }
 
-/// That of (0, 0, 0) from an eye there.
+/// The distance of (0, 0, 0) from an eye at (x, y, z).
 std::uint32_t distance_from(std::int64_t x, std::int64_t y, std::int64_t z, const Formats& formats) {
     TransformParameters parameters;
     parameters.eye = {x, y, z};
@@ -110,7 +110,7 @@ TEST_CASE("the thresholds rise with distance: a rank's by two or four octaves fo
     const auto asks = [&](const RankEntry& entry, std::uint64_t distance, const Formats& formats) {
         return rank_test_in_view(entry, {distance, 0}, parameters, formats);
     };
-    // A rank has 10 bits behind the point, a bound 11.
+    // A rank has 10 fraction bits, a bound 11.
     const std::uint32_t rank = 40 << 10;
     parameters.rank_threshold = (20 << 10) - 1;
     CHECK(asks({rank, 0}, 1 << 10, with_distances()));

@@ -46,7 +46,7 @@ std::vector<std::vector<std::string>> rows_below(const std::string& heading) {
         rows.push_back(cells);
     }
     REQUIRE(rows.size() > 2);
-    rows.erase(rows.begin(), rows.begin() + 2);  // head and line
+    rows.erase(rows.begin(), rows.begin() + 2);  // header and separator
     return rows;
 }
 
@@ -58,7 +58,7 @@ std::set<std::string> matches(const std::string& text, const std::string& patter
     return found;
 }
 
-/// Functions declared at the beginning of a line in the datapath's headers.
+/// Functions declared at the start of a line in the datapath's headers.
 std::set<std::string> functions() {
     std::set<std::string> names;
     for (const auto& entry : std::filesystem::directory_iterator(folder)) {
@@ -114,7 +114,7 @@ TEST_CASE("the README's intermediates are those of the code, with their widths i
 
 namespace {
 
-/// Those of every test, each once.
+/// Visits the registers of every height test, each once.
 template <class Visit>
 void visit_every_register(Visit visit) {
     std::set<std::string> seen;
@@ -149,7 +149,7 @@ TEST_CASE("the README's registers are those of the code, with their widths in th
 }
 
 TEST_CASE("registers: the table has every parameter") {
-    std::map<std::string, std::size_t> found;  // by the group before the first dot
+    std::map<std::string, std::size_t> found;  // by group, the part before the first dot
     visit_every_register([&](const Register& field, const auto&) {
         const std::string name = field.name;
         if (name.find(".offset") == std::string::npos && name != "transform.view_distance_shift")

@@ -18,7 +18,7 @@ double reciprocal_error(std::uint32_t m) {
     return static_cast<double>(static_cast<Wide>(reciprocal(m)) * m - (Wide{1} << 63)) * 0x1p-63;
 }
 
-/// Relative error of reciprocal_root(m) from its square: (1 + e)^2 - 1 = 2 e, but for e^2.
+/// Relative error of reciprocal_root(m) from its square: (1 + e)^2 - 1 = 2 e, neglecting e^2.
 double root_error(std::uint32_t m) {
     const auto y = static_cast<Wide>(reciprocal_root(m));
     return static_cast<double>(y * y * m - (Wide{1} << 92)) * 0x1p-93;
@@ -32,7 +32,7 @@ struct Extremes {
     }
 };
 
-/// Every table interval's two ends with their neighbours, then `count` samples.
+/// Both ends of every table interval with their neighbours, then `count` samples.
 template <class Visit>
 void sample(std::uint32_t first, std::uint32_t interval, int count, Visit&& visit) {
     for (std::uint64_t at = first; at < std::uint64_t{1} << 32; at += interval) {
@@ -54,7 +54,7 @@ TEST_CASE("reciprocal: seeds and result within the stated errors") {
         for (const double m : {1 + static_cast<double>(k) / 128, 1 + static_cast<double>(k + 1) / 128})
             seed = std::max(seed, std::abs(std::ldexp(reciprocal_seeds[k], -16) * m - 1));
     CHECK(seed < 0x1p-8);
-    CHECK(seed > 0x1p-8 * 0.99);  // as tight as said
+    CHECK(seed > 0x1p-8 * 0.99);  // the bound is tight
 
     Extremes errors;
     std::uint64_t smallest = ~std::uint64_t{0}, largest = 0;
@@ -81,7 +81,7 @@ TEST_CASE("reciprocal root: seeds and result within the stated errors") {
             seed = std::max(seed, std::abs(std::ldexp(reciprocal_root_seeds[k], -31) * std::sqrt(m) - 1));
     }
     CHECK(seed < 0x1p-7 * 0.590);
-    CHECK(seed > 0x1p-7 * 0.585);  // as tight as said: 2^-7.76
+    CHECK(seed > 0x1p-7 * 0.585);  // the bound is tight: 2^-7.76
 
     Extremes errors;
     std::uint64_t smallest = ~std::uint64_t{0}, largest = 0;

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::array<AddressMode, 2> both_modes{AddressMode::clamp, AddressMode::repeat};
 
-/// Texel `index`, which may lie anywhere, as the address mode sees it.
+/// The texel that the address mode selects for `index`, which may be outside the map.
 std::uint32_t wrapped(std::int64_t index, std::uint32_t size, AddressMode mode) {
     if (mode == AddressMode::clamp)
         return static_cast<std::uint32_t>(std::clamp<std::int64_t>(index, 0, std::int64_t{size} - 1));
@@ -23,7 +23,7 @@ std::uint32_t wrapped(std::int64_t index, std::uint32_t size, AddressMode mode) 
     return static_cast<std::uint32_t>(rest < 0 ? rest + size : rest);
 }
 
-/// The sum texel by texel.
+/// The sum, texel by texel.
 std::uint64_t brute_force(const std::vector<std::uint32_t>& codes, const Rectangle& r, const MapGeometry& map) {
     std::uint64_t sum = 0;
     for (std::uint32_t y = r.first_row; y < r.last_row; ++y)
@@ -33,7 +33,7 @@ std::uint64_t brute_force(const std::vector<std::uint32_t>& codes, const Rectang
     return sum;
 }
 
-/// Equal size, inside (clamp) or begun inside (repeat), and placed as golden/ALGORITHM.md 4.2 says, by floor
+/// Equal size, inside the map (clamp) or starting inside (repeat), and placed as in golden/ALGORITHM.md 4.2, by floor
 /// division.
 bool placed_right(std::uint32_t centre, std::uint32_t first, std::uint32_t extent, std::uint32_t size,
                   AddressMode mode) {
@@ -74,7 +74,7 @@ Machine machine_of(std::uint32_t width, std::uint32_t height, AddressMode u, Add
     return Machine(registers, std::move(tables));
 }
 
-/// Every rectangle of a small map, sampled ones of a large map, against the brute force.
+/// Every rectangle of a small map, or samples of a large map, against the sum texel by texel.
 void check_sums(std::uint32_t width, std::uint32_t height, int bits, const std::vector<std::uint32_t>& codes,
                 Random& random) {
     for (const AddressMode u : both_modes) {
@@ -98,7 +98,7 @@ void check_sums(std::uint32_t width, std::uint32_t height, int bits, const std::
                         for (std::uint32_t y = 0; y <= height; ++y)
                             for (std::uint32_t x = 0; x <= width; ++x)
                                 check(x, y, {w, h});
-                // repeated meshes: several periods on
+                // repeated meshes: several periods away
                 check(3 * width + width / 2, 5 * height, {width, height});
             } else {
                 check(0, 0, {width, height});
@@ -182,7 +182,7 @@ TEST_CASE("rectangles: four reads inside the map, six across one border, nine ac
         });
         return count;
     };
-    // columns, then rows; what ends on the border does not cross it
+    // columns, then rows; a rectangle that ends on the border does not cross it
     CHECK(reads({0, 6, 0, 4}) == 4);
     CHECK(reads({2, 5, 1, 3}) == 4);
     CHECK(reads({4, 7, 1, 3}) == 6);

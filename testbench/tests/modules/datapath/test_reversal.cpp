@@ -9,9 +9,8 @@
 #include "testbench/prove/random_edges/direct_edge.h"
 #include "testbench/prove/random_edges/edge_trial.h"
 
-/// Edges from either end, all there are on formats narrow enough to enumerate
-/// (modules/datapath/CRACK_FREEDOM.md). What is enumerated is compared with the definitions too: something
-/// that always says no is symmetric as well.
+/// Edges from either end: all edges of formats narrow enough to enumerate (modules/datapath/CRACK_FREEDOM.md). The
+/// results are compared with the definitions, too, since a test that always says no is symmetric as well.
 using namespace tessera;
 using namespace tessera::datapath;
 using tessera::testing::Random;
@@ -40,7 +39,7 @@ Registers narrow_registers(AddressMode u, AddressMode v) {
     return registers;
 }
 
-/// A map of noise with both extremes, and normals in all octants of the upper half.
+/// A noise map that contains both extremes, and normals in all octants of the upper half.
 struct NarrowMap {
     std::vector<std::uint32_t> codes;
     std::vector<Direction> normals;
@@ -55,8 +54,8 @@ struct NarrowMap {
     }
 };
 
-/// Every vertex of few positions, every texture coordinate of the map and, where it repeats, a period beyond,
-/// few frames, both handednesses.
+/// Vertices with a few positions, every texture coordinate of the map and, if it repeats, of a second period, a few
+/// frames, and both handednesses.
 std::vector<Vertex> all_vertices(Machine& machine) {
     const MapGeometry& map = machine.registers.map;
     const std::array<Direction, 4> normals{{{0, 0, 16}, {-16, 0, 0}, {9, 9, -9}, {0, 0, -16}}};
@@ -175,7 +174,7 @@ TEST_CASE("reversal: Summed Height Test, every edge on maps of 1 to 4 texels a s
                 for (const SummedHeightUnit unit : {SummedHeightUnit::sum, SummedHeightUnit::area}) {
                     tests.summed_height_unit = unit;
                     const std::uint64_t area = unit == SummedHeightUnit::area ? measures.rectangle_area : 1;
-                    // none below it says no, none above it yes: all thresholds there are
+                    // these represent all thresholds: below the measure the test says yes, from it on no
                     const std::uint64_t most = measures.summed_height / area;
                     for (const std::uint64_t threshold :
                          {std::uint64_t{0}, most > 0 ? most - 1 : most, most, most + 1}) {

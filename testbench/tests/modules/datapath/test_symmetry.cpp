@@ -9,7 +9,7 @@
 #include "testbench/prove/random_edges/datapath_edge.h"
 #include "testbench/prove/random_edges/datapath_random.h"
 
-/// What keeps the surface closed: an edge is decided from its two ends, the same from either side.
+/// Crack freedom: an edge is decided from its two ends, identically from either side.
 using namespace tessera::datapath;
 using namespace tessera::testing;
 
@@ -47,8 +47,8 @@ Machine random_machine(std::uint32_t width, std::uint32_t height, AddressMode u,
     return Machine(registers, std::move(tables));
 }
 
-/// A base vertex anywhere on the map, its borders and (for a repeated map) other periods included, or one
-/// close to `near`: short edges are where rounding bites.
+/// A base vertex anywhere on the map, including its borders and (for a repeated map) other periods, or close to `near`:
+/// on short edges rounding matters most.
 Vertex any_vertex(Random& random, Machine& machine, const Vertex* near) {
     const MapGeometry& map = machine.registers.map;
     const auto coordinate = [&](std::uint32_t size, AddressMode mode, std::uint32_t other) {
@@ -76,7 +76,7 @@ Vertex any_vertex(Random& random, Machine& machine, const Vertex* near) {
     return v;
 }
 
-/// Edge 0 is (i, j), edge 1 is (j, i).
+/// A pass with edge 0 = (i, j) and edge 1 = (j, i).
 TrianglePass both_ways(Machine& machine, const Vertex& i, const Vertex& j) {
     TrianglePass pass;
     pass.triangle.vertices = {i, j, i};
@@ -114,13 +114,13 @@ TEST_CASE("symmetry: five tests, decision and inserted vertex, a million random 
                     splits += pass.split & 1;
                     for (std::size_t bit = 0; bit < 5; ++bit)
                         seen[bit] += pass.edges[0].tests >> bit & 1;
-                    // walk on, so that inserted vertices become ends too
+                    // continue from here, so that inserted vertices become ends too
                     i = random.coin() ? inserted_vertex(pass, 0) : j;
                     if (i.generation > 10)
                         i.generation = 0;
                 }
             }
-            // the agreement says something only if every test says yes and no
+            // the agreement is significant only if every test says both yes and no
             for (const int times : seen) {
                 CHECK(times > edges / 50);
                 CHECK(times < edges - edges / 50);

@@ -10,11 +10,11 @@
 #include "modules/datapath/transform.h"
 #include "testbench/prove/random_edges/datapath_random.h"
 
-/// A second opinion on rounding, saturation and widths from SystemC's own fixed-point and wide integer types.
+/// Checks rounding, saturation and widths against SystemC's own fixed-point and wide integer types.
 using namespace tessera::datapath;
 using namespace tessera::testing;
 
-/// Catch2's main runs; the SystemC library wants this name all the same.
+/// Catch2's main runs; the SystemC library still needs this symbol.
 int sc_main(int, char**) {
     return 0;
 }

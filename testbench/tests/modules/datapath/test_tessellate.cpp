@@ -24,7 +24,7 @@ TexCoord any_texture(Random& random) {
     return {random.natural(0, 1000), random.natural(0, 1000)};
 }
 
-/// Every field different from every other vertex's.
+/// A vertex in which every field differs from every other vertex's.
 Vertex any_vertex(Random& random) {
     Vertex v;
     v.position = any_position(random);
@@ -67,7 +67,7 @@ TrianglePass any_pass(Random& random) {
 
 namespace {
 
-/// Equal to itself, and to no copy of which one field differs.
+/// Requires equality with itself, and inequality with every copy in which one field differs.
 template <class Part, class... Fields>
 void check_equality(const Part& part, Fields Part::*... fields) {
     CHECK(part == part);
@@ -140,7 +140,7 @@ TEST_CASE("tessellate: children carry complete vertices and the parent's tags") 
             for (std::size_t v = 0; v < 3; ++v)
                 if (!same_bits(child.vertices[v], expected[indices.children[c][v]]))
                     FAIL("split " << int{pass.split} << ", child " << c << ", vertex " << v);
-            // Final: the parent's own edges that neither are split nor ask to be, whichever of the child's they are.
+            // Final edges: the parent's own edges that neither split nor ask to, whichever edges of the child they are.
             unsigned final_edges = 0;
             for (unsigned e = 0; e < 3; ++e)
                 for (unsigned of_parent = 0; of_parent < 3; ++of_parent)

@@ -15,8 +15,8 @@ namespace {
 
 using Row = std::array<std::int64_t, 4>;
 
-/// What the host can set: entries of magnitude 1 in the matrix's format, an offset of 61 bits, an exponent of
-/// up to 24 (a field of view of 0.1 degrees, 16384 pixels high).
+/// Limits of what the host sets: matrix entries of magnitude 1, an offset of 61 bits, an exponent of up to 24 (a field
+/// of view of 0.1 degrees, 16384 pixels high).
 constexpr std::int64_t largest_entry = std::int64_t{1} << 24;
 constexpr std::int64_t largest_offset = std::int64_t{1} << 61;
 constexpr int largest_exponent = 24;
@@ -30,7 +30,7 @@ struct Worst {
     std::uint64_t in_front = 0, saturated = 0;
 };
 
-/// Everything the header says about one position.
+/// Checks everything that the header says about one position.
 void check(const Position& p, const TransformParameters& parameters, const Formats& formats, Worst& worst) {
     Saturations saturations;
     const ScreenPosition got = transform(p, parameters, formats, saturations);
@@ -131,7 +131,7 @@ TEST_CASE("transform: a camera's registers, positions spread over the picture an
     Random random(12);
     Worst worst;
     for (int view = 0; view < 200; ++view) {
-        // Right, up and forward of a random view; the focal length as the host scales it.
+        // Right, up and forward of a random view, with the focal length as the host scales it.
         const auto real = [&] { return static_cast<double>(random.integer(-1000, 1000)) / 1000; };
         const std::array<double, 3> a{real(), real(), real()}, b{real(), real(), real()};
         const auto scaled = [](const std::array<double, 3>& v, double length) {

@@ -17,7 +17,7 @@ namespace {
 
 using Point = std::pair<std::int64_t, std::int64_t>;
 
-/// The six points on a parent whose midpoints are whole.
+/// The six points on a parent whose midpoints are exact.
 std::array<Point, 6> points_of(const Point& a, const Point& b, const Point& c) {
     const auto middle = [](const Point& p, const Point& q) {
         return Point{(p.first + q.first) / 2, (p.second + q.second) / 2};
@@ -59,8 +59,7 @@ TEST_CASE("triangulate: all eight splits, both diagonals: covers, keeps winding,
                 for (std::size_t e = 0; e < 3; ++e)
                     ++edges[{child[e], child[(e + 1) % 3]}];
             }
-            // What remains when inner edges, used once each way, are taken away is the border, each piece
-            // once.
+            // Without the inner edges, which occur once in each direction, the border remains, each piece once.
             std::map<std::pair<int, int>, int> outer;
             for (const auto& [edge, uses] : edges) {
                 CHECK(uses == 1);
@@ -113,7 +112,7 @@ TEST_CASE("triangulate: the corner cut off lies opposite the whole edge") {
 
 TEST_CASE("remaining quadrilateral: in the triangle's order from its first remaining vertex") {
     using Four = std::array<std::uint8_t, 4>;
-    // of the walk 0 3 1 4 2 5 what is left without the corner opposite the whole edge
+    // the walk 0 3 1 4 2 5 without the corner opposite the unsplit edge
     CHECK(remaining_quadrilateral(0) == Four{0, 1, 4, 5});
     CHECK(remaining_quadrilateral(1) == Four{3, 1, 2, 5});
     CHECK(remaining_quadrilateral(2) == Four{0, 3, 4, 2});
@@ -123,7 +122,7 @@ TEST_CASE("diagonal: the second if it is shorter than the first by more than a 6
     Random random(25);
     int close = 0, seconds = 0;
     for (int k = 0; k < 600'000; ++k) {
-        const std::int64_t limit = k % 2 == 0 ? 40 : 0x7fffffff;  // small ones come close
+        const std::int64_t limit = k % 2 == 0 ? 40 : 0x7fffffff;  // small coordinates give close lengths
         std::array<Position, 6> p;
         for (Position& at : p)
             at = {random.integer32(-limit - 1, limit), random.integer32(-limit - 1, limit),

@@ -13,7 +13,7 @@
 #include "testbench/tests/support/timed_checks.h"
 #include "testbench/tests/support/timed_modules.h"
 
-/// Devices on a platform, beside the testbench's own machine, which says what they are to write.
+/// Devices on a platform, next to the testbench's own machine, which gives the expected triangles.
 namespace tessera::testing {
 
 using LitKey = std::array<std::uint32_t, 18>;  // a record's words
@@ -37,7 +37,7 @@ inline LitKey key_of(const tessera_finished_triangle& triangle) {
     return key;
 }
 
-/// What the testbench's rasteriser takes of a setup.
+/// The triangles that the testbench's rasteriser takes for a set-up.
 struct Reference : tlm::tlm_analysis_if<LitTriangle> {
     NamedMachine machine;
     LitKeys keys;
@@ -54,7 +54,7 @@ struct Reference : tlm::tlm_analysis_if<LitTriangle> {
     }
 };
 
-/// Where a frame lies in bus memory.
+/// Addresses of a frame's parts in bus memory.
 struct FramePlaces {
     std::uint64_t displacement_map, normal_map, summed_height_table, triangles, ring;
     std::uint32_t triangle_count, ring_size;
@@ -99,7 +99,7 @@ struct Bench {
         for (std::size_t k = 0; k < initial.size(); ++k)
             contexts.push_back({&cpu, direct ? 0 : Router::registers + k * register_bytes, direct ? &memory : nullptr});
     }
-    /// Places a setup's frame, each part at a multiple of 4, and a ring, which alone may be written.
+    /// Places a set-up's frame, each part at a multiple of 4, and a ring, the only writable area.
     FramePlaces place(const MachineSetup& setup, std::uint32_t ring_size, bool beyond = false) {
         const FrameImage image = image_of(setup, beyond);
         const auto put = [&](const std::vector<unsigned char>& data) {
@@ -144,7 +144,7 @@ inline tessera_register number_of(std::uint32_t offset) {
     return numbers.at(offset);
 }
 
-/// Every register of the machine that software may write, by the driver.
+/// Writes every register of the machine that software may write, through the driver.
 inline void set_machine(tessera_driver& driver, const datapath::Registers& registers) {
     for (const DeviceRegister& r : register_map(registers, {})) {
         if (r.offset < offset::machine || r.access != RegisterAccess::read_write)
@@ -178,7 +178,7 @@ inline void pop_all(tessera_driver& driver, LitKeys& keys) {
     }
 }
 
-/// Starts a frame and reads the ring until it has ended: its triangles. result: of the driver.
+/// Starts a frame and reads the ring until the frame has ended; returns its triangles. result: the driver's.
 inline LitKeys run_frame(tessera_driver& driver, int& result) {
     LitKeys keys;
     result = tessera_start(&driver);
@@ -189,7 +189,7 @@ inline LitKeys run_frame(tessera_driver& driver, int& result) {
     pop_all(driver, keys);
     return keys;
 }
-/// One that succeeds.
+/// The same for a frame that must succeed.
 inline LitKeys run_frame(tessera_driver& driver) {
     int result = TESSERA_OK;
     const LitKeys keys = run_frame(driver, result);
@@ -200,10 +200,10 @@ inline LitKeys run_frame(tessera_driver& driver) {
 
 inline void expect_same(const LitKeys& found, const LitKeys& expected) {
     CHECK(found.size() == expected.size());
-    CHECK((found == expected));  // not to be printed
+    CHECK((found == expected));  // extra parentheses: nothing is printed
 }
 
-/// A row of a CaseTable: a mode, and settings of the job besides.
+/// A row of a CaseTable: a mode, and additional settings of the job.
 struct BenchMode {
     std::string name;
     bool timed;
@@ -218,7 +218,7 @@ inline Job small_job(bool timed, const std::string& settings = "") {
                                  settings);
 }
 
-/// The formats alone: what a device is built with before a frame sets its registers.
+/// The formats alone: a device's registers before a frame sets them.
 inline datapath::Registers formats_of(const MachineSetup& setup) {
     datapath::Registers registers;
     registers.formats = setup.registers.formats;

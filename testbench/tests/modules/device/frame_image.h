@@ -7,19 +7,19 @@
 
 namespace tessera::testing {
 
-/// What a frame needs in bus memory.
+/// The data of a frame in bus memory.
 struct FrameImage {
     std::vector<unsigned char> displacement_map, normal_map, summed_height_table, triangles;
 };
 
-/// Sets the bits of a table's entries that lie beyond their format.
+/// Sets the bits of a table's entries beyond their format.
 inline void fill_beyond(std::vector<unsigned char>& table, std::size_t entry_bytes, int bits) {
     for (std::size_t entry = 0; entry < table.size(); entry += entry_bytes)
         for (std::size_t bit = static_cast<std::size_t>(bits); bit < 8 * entry_bytes; ++bit)
             table[entry + bit / 8] = static_cast<unsigned char>(table[entry + bit / 8] | 1u << bit % 8);
 }
 
-/// The three tables and the base triangles of a setup. beyond: bits of an entry beyond its format are set.
+/// The three tables and the base triangles of a set-up. beyond: sets bits of an entry beyond its format.
 inline FrameImage image_of(const MachineSetup& setup, bool beyond = false) {
     FrameImage image;
     const datapath::Registers& r = setup.registers;

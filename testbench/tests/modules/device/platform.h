@@ -20,14 +20,14 @@
 /// A platform around devices: a memory, a router, and a processor that runs a test's program.
 namespace tessera::testing {
 
-/// Memory at [base, base + size): loosely timed, any number of initiators. Counts what should not happen.
+/// Memory at [base, base + size): loosely timed, with any number of initiators. Counts accesses that should not happen.
 struct BusMemory : sc_core::sc_module {
     tlm_utils::multi_passthrough_target_socket<BusMemory> socket{"socket"};
     std::uint64_t base;
     std::vector<unsigned char> bytes;
     sc_core::sc_time latency{20, sc_core::SC_NS};
     bool waits = false;  ///< lets the latency pass itself, instead of annotating it
-    /// Where transactions may write, and how many wrote elsewhere.
+    /// The writable addresses, and the number of writes elsewhere.
     struct Range {
         std::uint64_t first = 0, end = 0;
     };
@@ -83,7 +83,7 @@ struct BusMemory : sc_core::sc_module {
     }
 };
 
-/// Sends an access to the device whose registers lie there, any other to the memory.
+/// Routes an access to the device whose registers contain its address, any other to the memory.
 struct Router : sc_core::sc_module {
     tlm_utils::multi_passthrough_target_socket<Router> from{"from"};
     sc_core::sc_vector<tlm_utils::simple_initiator_socket<Router>> to_devices;

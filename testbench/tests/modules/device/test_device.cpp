@@ -22,7 +22,7 @@ struct Row {
     bool beyond = false;  // bits of table entries beyond their formats are set
 };
 
-/// small_job() made the default job again.
+/// Restores the default job's sizes in small_job().
 const char* const whole_job = "mesh.columns=0 mesh.rows=0 map.width=264 map.height=264 tests.generation_limit=12";
 
 const char* const narrow_formats =
@@ -39,7 +39,7 @@ void same_as_testbench(const Row& row, const MachineSetup& setup) {
     Reference reference("reference", setup);
     DeviceDesign design = design_of(setup);
     design.burst_bytes = row.burst_bytes;
-    // what the registers hold at first is not what the frame needs
+    // the initial register values are not those that the frame needs
     const datapath::Registers initial = formats_of(setup);
     Bench bench({initial}, design, row.approximately_timed);
     bench.cpu.approximately_timed = row.approximately_timed;

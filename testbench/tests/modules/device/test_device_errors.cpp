@@ -2,7 +2,7 @@
 #include "testbench/tests/modules/device/bench.h"
 #include "testbench/tests/support/case_table.h"
 
-// What software does wrong: refused accesses, refused frames, stopped frames.
+// Software errors: refused accesses, refused frames, stopped frames.
 
 using namespace tessera;
 using namespace tessera::testing;
@@ -13,7 +13,7 @@ MachineSetup setup_for(const BenchMode& mode, const std::string& settings = "") 
     return setup_of(small_job(mode.timed, settings));
 }
 
-/// A register of a frame that is otherwise right, its value, and what start says.
+/// A register of an otherwise correct frame, its value, and the expected result of start.
 struct Refusal {
     tessera_register number;
     std::int64_t value;

@@ -2,7 +2,7 @@
 
 #include "testbench/tests/support/case_table.h"
 
-// Frame after frame: other registers, other maps, a reset in the middle, two devices, interrupts.
+// Frames in sequence: with other registers, other maps, a reset in the middle, two devices, interrupts.
 
 using namespace tessera;
 using namespace tessera::testing;
@@ -12,7 +12,7 @@ namespace {
 const BenchMode functional{"functional", false};
 const BenchMode timed{"timed", true};
 
-/// Setups, what the testbench makes of them, and a bench of devices.
+/// Set-ups, the testbench's triangles for them, and a bench of devices.
 struct Frames {
     std::vector<MachineSetup> setups;
     std::vector<std::unique_ptr<Reference>> references;
@@ -94,7 +94,7 @@ const CaseTable<BenchMode> without_fetch{
         CHECK(reads_again + 100 < reads);
     }};
 
-/// Registers are at their reset values.
+/// Requires that registers have their reset values.
 void expect_reset(tessera_driver& driver, const datapath::Registers& initial) {
     for (const DeviceRegister& r : register_map(initial, {64, 64})) {
         INFO(r.name);
@@ -120,7 +120,7 @@ const CaseTable<BenchMode> resets{"a reset at any moment of a frame, and the nex
                                           for (unsigned k = 0; k < 24; ++k) {
                                               INFO("reset " << k);
                                               frames.set(driver, 0);
-                                              // nobody reads the ring, so that the frame does not end by itself
+                                              // the ring is not read, so that the frame does not end by itself
                                               REQUIRE(tessera_start(&driver) == TESSERA_OK);
                                               cpu.pass(sc_core::sc_time(40 << (k / 2), sc_core::SC_NS));
                                               std::uint32_t status = 0;
@@ -231,7 +231,7 @@ const CaseTable<BenchMode> empty_frame{
 
 namespace {
 
-/// A frame that the processor sleeps through. Returns the longest delay with which the device called the memory.
+/// Runs a frame while the processor sleeps. Returns the longest delay of a call that the device made to the memory.
 sc_core::sc_time longest_delay(const BenchMode& mode) {
     tlm::tlm_global_quantum::instance().set(sc_core::sc_time(500, sc_core::SC_NS));
     Frames frames(mode, {""}, 1, 5000);

@@ -4,8 +4,8 @@
 #include "testbench/tests/modules/device/bench.h"
 #include "testbench/tests/support/case_table.h"
 
-// Random accesses and random addresses: each ends with an error or a right result, and no write leaves the ring.
-// More of them: TESSERA_DEVICE_ACCESSES, TESSERA_DEVICE_FRAMES; others: TESSERA_DEVICE_SEED.
+// Random accesses and random addresses: each ends with an error or a correct result, and no write leaves the ring.
+// TESSERA_DEVICE_ACCESSES and TESSERA_DEVICE_FRAMES set their numbers, TESSERA_DEVICE_SEED the seed.
 
 using namespace tessera;
 using namespace tessera::testing;
@@ -34,14 +34,14 @@ MachineSetup limited_setup(const BenchMode& mode) {
         small_job(mode.timed, "hardware.queue_capacity=32 hardware.off_chip_triangles=2000 " + mode.settings));
 }
 
-/// Every item goes through its packed form: a value beyond its format would be an SC_ERROR.
+/// Sends every item through its packed form: a value beyond its format would be an SC_ERROR.
 DeviceDesign packed_design(const MachineSetup& setup) {
     DeviceDesign design = design_of(setup);
     design.machine.packed_streams = true;
     return design;
 }
 
-/// Words in which most bits are zero, or ones, or anything.
+/// Words with mostly zeros, mostly ones, or random bits.
 std::uint32_t random_word(Dice& dice) {
     const std::uint64_t word = dice.any();
     switch (dice.below(5)) {
@@ -53,7 +53,7 @@ std::uint32_t random_word(Dice& dice) {
     }
 }
 
-/// Before each write of the device: what the ring's registers say is what may be written.
+/// Before each write of the device sets the writable range to the ring in its registers.
 void watch_ring(Bench& bench) {
     bench.memory.writable_now = [&bench] {
         std::vector<unsigned char> data(12);
@@ -93,7 +93,7 @@ const CaseTable<BenchMode> random_accesses{
             tessera_driver& driver = bench.init();
             cpu.approximately_timed = mode.approximately_timed;
             for (std::uint64_t k = 0; k < count; ++k) {
-                if (k % 100 == 0 && !bench.devices[0]->busy())  // so that some frames begin
+                if (k % 100 == 0 && !bench.devices[0]->busy())  // so that some frames start
                     set_frame(driver, setup, places);
                 std::vector<unsigned char> data(4 * (dice.one_in(3) ? dice.below(40) : 1) +
                                                 (dice.one_in(8) ? dice.below(4) : 0) + 4);
@@ -121,7 +121,7 @@ const CaseTable<BenchMode> random_accesses{
             }
             CHECK(tessera_reset(&driver, 1000000) == TESSERA_OK);
             cpu.keeper.sync();
-            bench.memory.bytes = image;  // a random ring may have lain over it
+            bench.memory.bytes = image;  // a random ring may have overwritten it
             set_frame(driver, setup, places);
             found = run_frame(driver);
         };

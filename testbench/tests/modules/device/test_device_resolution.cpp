@@ -1,14 +1,14 @@
 #include "testbench/tests/modules/device/bench.h"
 
-// The device under time resolutions of SystemC other than its default, 1 ps. A program of its own: the constants of other
-// tests fix the resolution before main.
+// The device with time resolutions of SystemC other than the default of 1 ps. A separate program, since the constants
+// of other tests fix the resolution before main.
 
 using namespace tessera;
 using namespace tessera::testing;
 
 namespace {
 
-/// A frame of timed mode, beside the testbench's.
+/// Compares a frame of timed mode with the testbench's.
 void expect_frames(double resolution, sc_core::sc_time_unit unit) {
     sc_core::sc_set_time_resolution(resolution, unit);
     const MachineSetup setup = setup_of(small_job(true, "tests.generation_limit=3"));

@@ -6,14 +6,14 @@
 #include "testbench/tests/support/source_folder.h"
 #include "testbench/tests/support/test_folder.h"
 
-// What a frame moves over the bus, beside what `tessera run` says the host sends; and a sink that is slow.
+// The bytes that a frame moves over the bus, compared with those that `tessera run` reports; and a slow sink.
 
 using namespace tessera;
 using namespace tessera::testing;
 
 namespace {
 
-/// Takes the machine's triangles in a thread, and waits after each.
+/// Takes the machine's triangles in a thread and waits after each.
 struct WaitingSink : sc_core::sc_module {
     FrameStreams streams;
     std::vector<LitTriangle> taken;

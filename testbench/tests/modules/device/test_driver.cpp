@@ -6,7 +6,7 @@
 #include "modules/device/driver/tessera_driver.h"
 #include "modules/device/register_map.h"
 
-// The driver against a device that is an array of words.
+// The driver, with an array of words as the device.
 
 using namespace tessera;
 

@@ -7,10 +7,10 @@
 #include <systemc>
 #include <tlm>
 
-/// Memories of the TLM-2.0 base protocol, as somebody else would write them.
+/// Memories of the TLM-2.0 base protocol, as third parties write them.
 namespace tessera::testing {
 
-/// Bytes that read as their own addresses until written.
+/// Bytes that read as their own addresses until they are written.
 struct Bytes {
     std::map<std::uint64_t, unsigned char> written;
 
@@ -29,7 +29,7 @@ struct Bytes {
     }
 };
 
-/// Blocking transport alone, in a simple_target_socket: END_REQ is implied by the answer.
+/// Blocking transport only, in a simple_target_socket: the response implies END_REQ.
 struct BlockingMemory : sc_core::sc_module {
     tlm_utils::simple_target_socket<BlockingMemory> socket{"socket"};
     Bytes bytes;
@@ -55,7 +55,7 @@ struct BlockingMemory : sc_core::sc_module {
     unsigned transport_dbg(tlm::tlm_generic_payload& payload) { return bytes.access(payload); }
 };
 
-/// Any latency and bandwidth, pipelined: END_REQ when the request's bytes are through, the answer a latency later.
+/// Any latency and bandwidth, pipelined: END_REQ after the request's last byte, the response a latency later.
 struct PipelinedMemory : sc_core::sc_module {
     tlm_utils::passthrough_target_socket<PipelinedMemory> socket{"socket"};
     Bytes bytes;
@@ -81,7 +81,7 @@ struct PipelinedMemory : sc_core::sc_module {
         bytes.access(payload);
         const unsigned counted = payload.get_data_length() - uncounted;
         const unsigned taken = bandwidth == 0 ? 1 : (counted + bandwidth - 1) / bandwidth;
-        // a table's port takes the address in its cycle; a channel answers after the last byte
+        // a table's port takes the address in its cycle; a channel responds after the last byte
         answers_.notify(payload, its_period * (latency + (bandwidth == 0 ? 0 : taken)));
         phase = tlm::END_REQ;
         delay = its_period * taken;

@@ -9,7 +9,7 @@
 
 namespace tessera::testing {
 
-/// A unit that makes each of its reads as soon as it may, from a cycle on, and notes when they were offered and
+/// A unit that makes each of its reads as early as possible from a given cycle, and records when they were offered and
 /// answered.
 struct MemoryReader : sc_core::sc_module {
     MemoryPort port;
@@ -35,7 +35,7 @@ struct MemoryReader : sc_core::sc_module {
             REQUIRE(port.socket->transport_dbg(request) == 4);
         }
     }
-    /// All reads were answered, with what was written.
+    /// Requires that all reads were answered with the written values.
     void check_values() const {
         CHECK(answered.size() == reads.size());
         std::size_t place = 0;

@@ -10,7 +10,7 @@
 #include "modules/memories/channel.h"
 #include "modules/memories/storage.h"
 
-// When a memory serves a request, and what it holds: plain C++, without a kernel.
+// When a memory serves a request, and what it contains: plain C++, without a simulation kernel.
 
 using namespace tessera;
 using Addresses = std::vector<std::uint64_t>;
@@ -19,7 +19,7 @@ namespace {
 
 const datapath::TableLayout layout{4096, 16, 16, 4};
 
-/// Ports that are asked for entries by their numbers.
+/// Ports from which entries are requested by number.
 struct Ports {
     BankedPorts ports;
 
@@ -56,7 +56,7 @@ TEST_CASE("banked ports: one port takes one address a cycle") {
 TEST_CASE("banked ports: several ports of a bank share a request") {
     Ports p({2, 1, 1});
     CHECK(p.serve({0, 1, 2}, 10) == 11 + 1);  // two in cycle 10, one in 11
-    CHECK(p.ready({3}) == 11);                // the other port of 11
+    CHECK(p.ready({3}) == 11);                // the other port in cycle 11
     CHECK(p.serve({3}, 11) == 12);
     CHECK(p.ready({3}) == 12);
     CHECK(p.ports.slots_per_cycle() == 2);
@@ -69,7 +69,7 @@ TEST_CASE("banked ports: entry k is in bank k mod banks, and each bank counts fo
     CHECK(p.serve({0, 4, 8}, 11) == 13 + 1);  // all in bank 0: 11, 12, 13
     CHECK(p.ready({12}) == 14);
     CHECK(p.ready({1}) == 11);
-    CHECK(p.ready({1, 16}) == 14);  // ready when each of its banks is
+    CHECK(p.ready({1, 16}) == 14);  // ready when all of its banks are
     CHECK(p.ports.slots_per_cycle() == 4);
     CHECK(p.ports.slots_taken() == 7);
     CHECK(p.ports.occupied_cycles() == 4);  // bank 0's
@@ -78,7 +78,7 @@ TEST_CASE("banked ports: entry k is in bank k mod banks, and each bank counts fo
 TEST_CASE("banked ports: a window lets requests start while others wait for a bank") {
     Ports p({1, 2, 1, 0, 1, Interleave::entry, 2});
     CHECK(p.serve({0, 2, 4}, 10) == 12 + 1);  // bank 0: 10, 11, 12
-    CHECK(p.ready({6}) == 0);                 // one of two is under way
+    CHECK(p.ready({6}) == 0);                 // one of two is in progress
     CHECK(p.serve({6, 1}, 10) == 13 + 1);     // bank 0 in 13, bank 1 in 10
     CHECK(p.ready({3}) == 13);                // the first has sent its last address
     CHECK(p.serve({3}, 13) == 14);            // bank 1
@@ -112,7 +112,7 @@ TEST_CASE("banked ports: exclusive-or banks hold the same share of any table, an
 
 namespace {
 
-/// Cycles that the four corners of a rectangle of every size up to `most` take on average, at 64 places each.
+/// Average cycles for the four corners of a rectangle of each size up to `most`, at 64 positions each.
 template <class Bank>
 double cycles_a_rectangle(unsigned banks, std::uint32_t most, bool powers_of_two, Bank bank) {
     unsigned rectangles = 0, cycles = 0;
@@ -133,7 +133,7 @@ double cycles_a_rectangle(unsigned banks, std::uint32_t most, bool powers_of_two
 
 TEST_CASE(
     "banked ports: exclusive-or banks conflict less than chance, entry by entry more where sides are powers of 2") {
-    // Four corners in four of `banks` banks by chance: the mean of the fullest.
+    // Four corners in random banks of `banks`: the mean count of the fullest bank.
     for (const auto& [banks, chance] : {std::pair{4U, 2.125}, {8U, 1.65}, {16U, 1.35}}) {
         CAPTURE(banks);
         const auto exclusive_or = [banks = banks](std::uint32_t x, std::uint32_t y) {
@@ -193,7 +193,7 @@ TEST_CASE("storage: what was never written is 0, what was is there, and nothing 
     };
     CHECK(read(110) == bytes);
     CHECK(read(108) == std::array<unsigned char, 4>{0, 0, 1, 2});
-    CHECK(read(112) == std::array<unsigned char, 4>{3, 4, 0, 0});  // half of it beyond what was written
+    CHECK(read(112) == std::array<unsigned char, 4>{3, 4, 0, 0});  // half of it beyond the written bytes
     CHECK(read(146) == std::array<unsigned char, 4>{0, 0, 0, 0});
     storage.write(146, bytes.data(), 4);
     CHECK(read(146) == bytes);

@@ -11,8 +11,8 @@
 #include "testbench/tests/modules/memories/memory_reader.h"
 #include "testbench/tests/support/case_table.h"
 
-// Memories of the base protocol, which know nothing of gathers, behind the bridge: the rules of the protocol,
-// one by one.
+// Memories of the base protocol, which do not support gathers, behind the bridge: the rules of the protocol, one by
+// one.
 
 using namespace tessera;
 using namespace tessera::testing;
@@ -31,7 +31,7 @@ std::uint64_t own_address(std::uint64_t address) {
     return (address & 255) | (address + 1 & 255) << 8 | (address + 2 & 255) << 16 | (address + 3 & 255) << 24;
 }
 
-/// A reader and a bridge before a memory of the base protocol.
+/// A reader and a bridge in front of a memory of the base protocol.
 struct Bench {
     CycleScheduler clock;
     BaseProtocolBridge bridge;
@@ -71,7 +71,7 @@ struct Row {
     Cycles answered;
 };
 
-// As test_table_memory.cpp expects of a table with one port: entries are sent in cycles 10, 11, 12 ...
+// As in test_table_memory.cpp for a table with one port: entries are sent in cycles 10, 11, 12 ...
 const CaseTable blocking(
     "bridge: ",
     {
@@ -101,12 +101,12 @@ TEST_CASE("bridge: requests wait in its buffer while entries are sent") {
     bench.bridge.to_memory.bind(memory.socket);
     bench.reader.reads = gathers(6, 4);
     bench.run();
-    CHECK(bench.reader.offered == Cycles{10, 10, 10, 10, 14, 18});  // one sent, two wait, one on offer
+    CHECK(bench.reader.offered == Cycles{10, 10, 10, 10, 14, 18});  // one sent, two waiting, one offered
 }
 
 namespace {
 
-/// Non-blocking transport, in the way a test chooses.
+/// Non-blocking transport in a way that the test selects.
 struct ScriptedMemory : sc_core::sc_module {
     enum class Way { completed, begin_response, end_request, accepted, begin_request };
 
@@ -140,14 +140,14 @@ struct ScriptedMemory : sc_core::sc_module {
             case Way::completed: return tlm::TLM_COMPLETED;
             case Way::begin_response: phase = tlm::BEGIN_RESP; return tlm::TLM_UPDATED;
             case Way::end_request: phase = tlm::END_REQ; return tlm::TLM_UPDATED;
-            case Way::begin_request:  // a breach
+            case Way::begin_request:  // a violation
                 return tlm::TLM_UPDATED;
             default: return tlm::TLM_ACCEPTED;
         }
     }
 };
 
-/// A scripted memory, and what it does in which cycle.
+/// A scripted memory, and its actions by cycle.
 struct ScriptedBench : Bench {
     ScriptedMemory memory{"memory"};
     Caller script{clock};
@@ -226,7 +226,7 @@ TEST_CASE("bridge: END_REQ may come later, and its delay counts") {
     });
     bench.in_cycle(16, [&] { CHECK(bench.memory.come.size() == 1); });
     bench.in_cycle(17, [&] { CHECK(bench.memory.come.size() == 2); });
-    bench.in_cycle(20, [&] { bench.answer(1, sc_time(35, SC_PS)); });  // END_REQ implied; an answer in 24
+    bench.in_cycle(20, [&] { bench.answer(1, sc_time(35, SC_PS)); });  // implies END_REQ; the response is in 24
     bench.in_cycle(21, [&] { bench.answer(0, sc_time(15, SC_PS)); });  // in 23
     bench.run();
     CHECK(bench.reader.answered == Cycles{24});

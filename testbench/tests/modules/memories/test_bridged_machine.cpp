@@ -14,15 +14,15 @@
 #include "testbench/tests/support/job_settings.h"
 #include "testbench/tests/support/timed_checks.h"
 
-// The machine with memories of the base protocol in the places of its own: the same mesh, and with the same
-// latencies the same cycles.
+// The machine with memories of the base protocol in place of its own: the same mesh, and the same cycles if the
+// latencies are equal.
 
 using namespace tessera;
 using namespace tessera::testing;
 
 namespace {
 
-/// Makes the memory that stands in the place of one of the machine's, by its name there, and binds the bridge to it.
+/// Makes the memory that replaces the machine's memory of this name, and binds the bridge to it.
 using Maker = std::function<std::unique_ptr<sc_core::sc_module>(BaseProtocolBridge&, const std::string&)>;
 
 template <class Memory, class... Arguments>
@@ -62,7 +62,7 @@ class BridgedUnits : public UnitFactory {
     std::vector<std::unique_ptr<sc_core::sc_module>> memories_;
 };
 
-/// The machine on such memories; the host fills them.
+/// The machine with such memories, which the host fills.
 struct BridgedMachine {
     BridgedUnits units;
     Pipeline pipeline;
@@ -96,7 +96,7 @@ std::unique_ptr<sc_core::sc_module> blocking_5_ns(BaseProtocolBridge& bridge, co
     return bound<BlockingMemory>(bridge, name, sc_core::sc_time(5, sc_core::SC_NS));
 }
 
-/// Both machines at once, and the same cycles. The bridged memories have the latencies of the machine's own.
+/// Runs both machines, requires equal cycles. The bridged memories have the latencies of the machine's own.
 void expect_same_cycles(const Job& job) {
     const MachineSetup setup = setup_of(job);
     const Timing& timing = setup.design.timing;
@@ -137,7 +137,7 @@ TEST_CASE("bridged machine: functional mode, the same mesh") {
     expect_mesh(machine.monitor.mesh, bare_mesh(setup));
 }
 
-// The host's passes and the queue's then overtake one another.
+// The passes of host and queue then overtake one another.
 TEST_CASE("bridged machine: functional mode, memories that wait, and a watermark above 1: the same mesh") {
     const MachineSetup setup = setup_of(with_settings({}, "mode=functional hardware.queue_watermark=8"));
     BridgedMachine machine(setup, [](BaseProtocolBridge& bridge, const std::string& name) {

@@ -8,14 +8,14 @@
 #include "modules/memories/line_cache.h"
 #include "testbench/common/random.h"
 
-// A cache's lines: which are there, and which one goes.
+// A cache's lines: which are present, and which is evicted.
 
 using namespace tessera;
 using State = LineCache::State;
 
 namespace {
 
-/// Looks a line up and, if it is not there, fills it at once. True: it was there.
+/// Looks up a line and fills it at once if it is absent. Returns whether it was present.
 bool access(LineCache& cache, std::uint64_t number) {
     if (cache.find(number) != nullptr)
         return true;

@@ -9,7 +9,7 @@
 #include "testbench/tests/support/memory_protocol.h"
 #include "testbench/tests/support/timed_modules.h"
 
-// Off-chip memory to the cycle, and a port that writes and reads it.
+// Off-chip memory, cycle by cycle, and a port that writes and reads it.
 
 using namespace tessera;
 using namespace tessera::testing;
@@ -23,7 +23,7 @@ namespace {
 
 const sc_time period(10, SC_PS);
 
-/// Off-chip memory of 1000 bytes and a port for records of 40 bytes, of which 8 take no time.
+/// Off-chip memory of 1000 bytes and a port for records of 40 bytes, 8 of which take no time.
 struct OffChipBench : sc_core::sc_module {
     CycleScheduler clock{"clock", period};
     OffChipMemory memory;
@@ -71,7 +71,7 @@ struct OffChipBench : sc_core::sc_module {
 }  // namespace
 
 TEST_CASE("off-chip memory: bandwidth, latency, and one channel for both directions") {
-    // 32 bytes at 5 a cycle: 7 cycles each, one after another from 10 on; answered 20 after the last byte
+    // 32 bytes at 5 per cycle: 7 cycles each, one after another from 10; answered 20 after the last byte
     OffChipBench bench("bench", {20, 5, 4});
     bench.wanted = {{true, 0}, {true, 40}, {false, 40}, {true, 0}, {false, 0}, {false, 80}};
     bench.run();
@@ -93,7 +93,7 @@ TEST_CASE("off-chip memory: latency 0, a cycle for what fits into one") {
 }
 
 TEST_CASE("off-chip memory: a full buffer withholds END_REQ") {
-    // 4 cycles each: one served in cycle 10, two in the buffer, the fourth on offer until 14, the fifth until 18
+    // 4 cycles each: one served in cycle 10, two in the buffer, the fourth offered until 14, the fifth until 18
     OffChipBench bench("bench", {1, 8, 2});
     bench.wanted = std::vector<std::pair<bool, std::uint64_t>>(6, {true, 0});
     bench.run();
@@ -136,7 +136,7 @@ TEST_CASE("off-chip memory: as many answers under way as the latency asks for, i
     unsigned char data[8] = {};
     std::vector<MemoryRequest> requests;
     for (unsigned k = 0; k < 50; ++k)
-        requests.push_back(read_of(data, 8 * k, 8));  // no longer than what takes no time: counted whole
+        requests.push_back(read_of(data, 8 * k, 8));  // not longer than the part that takes no time: counted whole
     for (MemoryRequest& request : requests)
         initiator.send(request, tlm::BEGIN_REQ);
     sc_core::sc_start();

@@ -11,7 +11,7 @@
 #include "testbench/tests/modules/memories/memory_reader.h"
 #include "testbench/tests/support/case_table.h"
 
-// A table in off-chip memory behind a cache, to the cycle: fills, hits on lines under way, eviction, the channel.
+// A table in off-chip memory behind a cache, cycle by cycle: fills, hits on pending lines, eviction, the channel.
 
 using namespace tessera;
 using namespace tessera::testing;
@@ -25,7 +25,7 @@ namespace {
 const sc_time period(10, SC_PS);
 const datapath::TableLayout layout{4096, 16, 16, 4};
 
-/// A table in which entry k holds 3 * k + 1, 20 cycles and 16 bytes a cycle away; its cache, and a reader.
+/// A table whose entry k holds 3 * k + 1, 20 cycles away at 16 bytes per cycle; its cache, and a reader.
 struct Bench {
     CycleScheduler clock{"clock", period};
     Channel channel;
@@ -75,32 +75,32 @@ struct Row {
     std::uint64_t fills;
 };
 
-// A line of 64 bytes holds 16 entries and keeps the channel for four cycles. The first is asked for in cycle 10, off
-// the channel in 14 and there in 34; its entries are read from then on, one a cycle, and are answered a cycle later.
+// A line of 64 bytes holds 16 entries and occupies the channel for four cycles. The first is requested in cycle 10,
+// leaves the channel in 14 and arrives in 34. Its entries are then read one per cycle, each answered a cycle later.
 const CaseTable answers(
     "cache: ",
     {
         Row{"a line that is not there is fetched", behind({256, 64, 2, 4}), {{0}}, {35}, 1},
         {"entries of a line under way wait for it, and are no fill", behind({256, 64, 2, 4}), {{0}, {1}}, {35, 36}, 1},
-        // the second line: off the channel in 18, there in 38
+        // the second line leaves the channel in 18 and arrives in 38
         {"two lines follow each other on the channel", behind({256, 64, 2, 4}), {{0}, {16}}, {35, 39}, 2},
         {"a gather waits for its last line", behind({256, 64, 2, 4}), {{0, 16, 1, 17}}, {42}, 2},
-        // {16} is looked up when the first is answered, in 34: there in 58. {0} is found in 34 and read in 36.
+        // {16} is looked up when the first is answered, in 34, and arrives in 58. {0} is found in 34 and read in 36.
         {"no more requests are looked up than may be under way",
          behind({256, 64, 2, 2}),
          {{0}, {1}, {16}, {0}},
          {35, 36, 59, 59},
          2},
-        // one line: 16 takes the place of 0 in 34, 0 of 16 in 58
+        // one line: 16 replaces 0 in 34, 0 replaces 16 in 58
         {"a cache of one line evicts it", behind({1, 64, 4, 4}), {{0}, {16}, {0}}, {35, 59, 83}, 3},
         {"one line serves a gather of two, one after the other", behind({1, 64, 4, 4}), {{0, 16}}, {60}, 2},
-        // lines 0 and 3 share a set of one
+        // lines 0 and 3 share a set of one line
         {"a set that is full evicts, another does not",
          behind({128, 64, 1, 4}),
          {{0}, {16}, {48}, {16}},
          {35, 39, 59, 59},
          3},
-        // Of 10 bytes only 8 are whole entries: 1 cycle of the channel
+        // Only 8 of 10 bytes are whole entries: 1 cycle of the channel
         {"a line holds whole entries", behind({256, 10, 2, 4}), {{0, 1}, {2}}, {33, 34}, 2},
     },
     [](const Row& row) {
@@ -162,7 +162,7 @@ struct FunctionalRow {
     std::uint64_t transactions;
 };
 
-// Directly: but for the first read.
+// With direct access only the first read is a transaction.
 const CaseTable functional_reads("cache: functional reads go past it, ",
                                  {FunctionalRow{"by transaction", false, 256}, {"directly", true, 1}},
                                  [](const FunctionalRow& row) {

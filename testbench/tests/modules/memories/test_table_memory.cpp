@@ -8,7 +8,7 @@
 #include "testbench/tests/modules/memories/memory_reader.h"
 #include "testbench/tests/support/case_table.h"
 
-// A table's memory to the cycle: ports, banks, latency, width, gathers, arbitration, back-pressure.
+// A table's memory, cycle by cycle: ports, banks, latency, width, gathers, arbitration, back-pressure.
 
 using namespace tessera;
 using namespace tessera::testing;
@@ -21,7 +21,7 @@ namespace {
 const sc_time period(10, SC_PS);
 const datapath::TableLayout layout{4096, 16, 16, 4};
 
-/// A memory in which entry k holds 3 * k + 1, and its readers.
+/// A memory whose entry k holds 3 * k + 1, and its readers.
 struct Bench {
     CycleScheduler clock{"clock", period};
     TableMemory memory;
@@ -96,7 +96,7 @@ struct Row {
     Cycles answers;
 };
 
-// Request k of one entry takes the port in cycle 10 + k; its data comes `latency` cycles after.
+// Request k of one entry takes the port in cycle 10 + k; its data arrive `latency` cycles later.
 const CaseTable answers(
     "memory: ",
     {
@@ -105,18 +105,18 @@ const CaseTable answers(
         {"latency 0 answers in the cycle of the address", timing(1, 1, 0), single_reads(20), every(10, 1, 20)},
         {"latency 100 does not lower the throughput", timing(1, 1, 100), single_reads(60), every(110, 1, 60)},
         {"latency 2000 is beyond the clock's table", timing(1, 1, 2000), single_reads(3), every(2010, 1, 3)},
-        // addresses in cycles 10 to 13, 14 to 17 ...; the last one's data is the answer
+        // addresses in cycles 10 to 13, 14 to 17 ...; the last address's data complete the response
         {"a gather of four keeps one port for four cycles", timing(1, 1, 1), gathers(10, 4), every(14, 4, 10)},
         {"a gather of nine keeps one port for nine cycles", timing(1, 1, 3), gathers(5, 9), every(21, 9, 5)},
         {"two ports halve a gather of four", timing(2, 1, 1), gathers(10, 4), every(12, 2, 10)},
         {"four ports take a gather of four a cycle", timing(4, 1, 1), gathers(10, 4), every(11, 1, 10)},
-        // nine slots, four a cycle: gather k ends in slot 9 k + 8, in cycle 10 + floor((9 k + 8) / 4)
+        // nine slots, four per cycle: gather k ends in slot 9 k + 8, in cycle 10 + floor((9 k + 8) / 4)
         {"four ports and gathers of nine share cycles", timing(4, 1, 1), gathers(6, 9), {13, 15, 17, 19, 22, 24}},
-        // 4 bytes at 2 a cycle
+        // 4 bytes at 2 per cycle
         {"a port narrower than an entry takes it in pieces", timing(1, 1, 1, 2), single_reads(10), every(12, 2, 10)},
-        // 2 cycles an entry, 8 a gather
+        // 2 cycles per entry, 8 per gather
         {"a width that does not divide the entry rounds up", timing(1, 1, 1, 3), gathers(4, 4), every(18, 8, 4)},
-        // 4 bytes at 2 a cycle: entries 0 and 1 in cycles 10 and 11, one on each port
+        // 4 bytes at 2 per cycle: entries 0 and 1 in cycles 10 and 11, one on each port
         {"two narrow ports take two entries in pieces, and no entry in one cycle",
          timing(2, 1, 1, 2),
          single_reads(6),
@@ -124,16 +124,16 @@ const CaseTable answers(
         {"a gather of four through two narrow ports", timing(2, 1, 1, 2), gathers(3, 4), every(14, 4, 3)},
         {"a port wider than an entry takes one a cycle all the same", timing(1, 1, 1, 64), single_reads(10),
          every(11, 1, 10)},
-        // Entries 0, 1, 2, 3 lie in banks 0, 1, 2, 3: one cycle; 0, 4, 8, 12 all in bank 0: four. Gather 2 keeps bank 0
-        // in cycles 12 to 15. Requests are served in order, as soon as any bank is free: gather 3 in cycle 13, in banks
-        // 1 (twice), 2, 3, until 14; answers stay in order, behind gather 2's in 16.
+        // Entries 0, 1, 2, 3 lie in banks 0, 1, 2, 3: one cycle; 0, 4, 8, 12 all in bank 0: four. Gather 2 occupies
+        // bank 0 in cycles 12 to 15. Requests are served in order, as soon as any bank is free: gather 3 from cycle 13
+        // to 14, in banks 1 (twice), 2, 3. Responses stay in order: gather 2's is in 16, gather 3's follows.
         {"entries in different banks are read at the same time",
          timing(1, 4, 1),
          {{0, 1, 2, 3}, {4, 5, 6, 7}, {0, 4, 8, 12}, {1, 2, 3, 5}},
          {11, 12, 16, 16}},
         // Bank 0 in 10, 11, 12; without a window {0, 1} waits for it until 13, and {1, 2} for both its banks until 14.
         {"a request waits for each of its banks", timing(1, 4, 1), {{0, 4, 8}, {0, 1}, {1, 2}}, {13, 14, 15}},
-        // {0, 1} takes bank 1 in 10 and bank 0 in 13; {1, 2} starts in 13, as the first is through.
+        // {0, 1} takes bank 1 in 10 and bank 0 in 13; {1, 2} starts in 13, when the first is complete.
         {"with a window of two it waits until the request before the last is through",
          windowed(4, 2),
          {{0, 4, 8}, {0, 1}, {1, 2}},
@@ -156,7 +156,7 @@ const CaseTable answers(
 }  // namespace
 
 TEST_CASE("memory: an idle bank does not let requests past one that is taken") {
-    // all in bank 0 of two: one a cycle, as with one bank, and the buffer (1) leaves the rest waiting at the inputs
+    // all in bank 0 of two: one per cycle, as with one bank; the buffer (1) leaves the rest waiting at the inputs
     Bench bench(timing(1, 2, 1), 1, {}, 2);
     for (std::uint32_t k = 0; k < 10; ++k)
         bench.reader().reads.push_back({2 * k, 2 * k + 4, 2 * k + 8});
@@ -168,8 +168,8 @@ TEST_CASE("memory: an idle bank does not let requests past one that is taken") {
 
 TEST_CASE("memory: three readers take turns, none starves") {
     // One port, 30 reads each. In cycle 10 the reader called first takes the free port, then the buffer, and is the
-    // first to wait: its data come in 11, 12, 13. From then on all three wait at their inputs and each has every
-    // third cycle, until the first reader has had its 30, in 94; the other two share the rest.
+    // first to wait: its data arrive in 11, 12, 13. From then on all three wait at their inputs and each is served
+    // every third cycle, until the first reader has completed its 30, in 94; the other two share the rest.
     Bench bench(timing(1, 1, 1), 3);
     for (const auto& reader : bench.readers)
         reader->reads = single_reads(30);
@@ -188,7 +188,7 @@ TEST_CASE("memory: what it holds, in words") {
     for (const auto& reader : bench.readers)
         reader->reads = single_reads(30);
     sc_core::sc_start(sc_time(20 * 10, SC_PS));
-    // one being read, one in the buffer, one of each reader at an input
+    // one being read, one in the buffer, one from each reader at an input
     CHECK(bench.memory.describe_contents() == "2 requests, 3 waiting at the inputs");
     sc_core::sc_start();
     CHECK(bench.memory.describe_contents().empty());
@@ -201,14 +201,14 @@ TEST_CASE("memory: a reader that comes later gets its turn after at most the oth
     bench.reader(2).reads = single_reads(1);
     bench.reader(2).from = 40;
     bench.run();
-    // at worst one gather is being read, one is in the buffer, and one of each other reader goes first
+    // at worst one gather is being read, one is in the buffer, and one from each other reader goes first
     CHECK(bench.reader(2).answered[0] <= 40 + 4 * 4 + 1 + 1);
     CHECK(bench.reader(2).answered[0] > 41);
 }
 
 TEST_CASE("memory: a full buffer withholds END_REQ") {
-    // buffer 1, gathers of four: cycle 10: the first is served, the second waits in the buffer, the third is on offer
-    // until the first's four cycles are over
+    // buffer 1, gathers of four: in cycle 10 the first is served, the second waits in the buffer, and the third is
+    // offered until the first's four cycles are over
     Bench bench(timing(1, 1, 1));
     bench.reader().reads = gathers(6, 4);
     bench.run();
@@ -219,13 +219,13 @@ TEST_CASE("memory: a buffer of four takes four requests more") {
     Bench bench(timing(1, 1, 1, 0, 4));
     bench.reader().reads = gathers(8, 4);
     bench.run();
-    // one served, four in the buffer, the sixth on offer; each gather served lets one more in
+    // one served, four in the buffer, the sixth offered; each served gather makes room for one more
     CHECK(bench.reader().offered == Cycles{10, 10, 10, 10, 10, 10, 14, 18});
     CHECK(bench.reader().answered == every(14, 4, 8));
 }
 
 TEST_CASE("memory: no more requests are under way than the reader has room for") {
-    // two under way, latency 10: a pair in cycles 10 and 11, answered in 20 and 21, each replaced at once
+    // two in flight, latency 10: a pair in cycles 10 and 11, answered in 20 and 21, each replaced at once
     Bench bench(timing(1, 1, 10), 1, {}, 2);
     bench.reader().reads = single_reads(6);
     bench.run();
@@ -245,7 +245,7 @@ TEST_CASE("memory: busy from the first address to the last answer, its port as l
 }
 
 TEST_CASE("memory: the mean occupancy is throughput times latency") {
-    // Little: 40 reads, each from its address to its data `latency` cycles in the memory, none waits
+    // Little's law: 40 reads, each in the memory for `latency` cycles from its address to its data, none waits
     Bench bench(timing(1, 1, 25));
     bench.reader().reads = single_reads(1);
     bench.run();
@@ -253,7 +253,7 @@ TEST_CASE("memory: the mean occupancy is throughput times latency") {
     CHECK(bench.memory.activity().high_water_mark() == 1);
 }
 
-// Gathers of four from entry k on: as if each side were alone, 4 cycles a gather, the second side's latency of 3.
+// Gathers of four from entry k. Each side works as if alone: 4 cycles per gather, latency 3 on the second side.
 TEST_CASE("memory: two sides hold one table, and neither side's readers wait for the other's") {
     Bench bench(timing(1, 1, 1));
     TableMemory second("second_side", bench.clock, bench.memory, layout, timing(1, 1, 3), {});
@@ -271,7 +271,7 @@ TEST_CASE("memory: two sides hold one table, and neither side's readers wait for
     CHECK(bench.memory.transactions() == 40);
     CHECK(second.transactions() == 48);
     CHECK(second.slots_taken() == 48);
-    // functional mode: by a transaction, then by DMI, what was written through the first side
+    // functional mode: first by a transaction, then by DMI, the data written through the first side
     sc_time delay;
     for (const std::uint32_t entry : {77u, 78u})
         CHECK(reader.port.read(layout.base + 4 * entry, delay) == 3 * entry + 1);

@@ -9,7 +9,7 @@
 #include "modules/schedule/stage.h"
 #include "modules/schedule/table.h"
 
-// The recurrences of a schedule, each with cycles counted by hand.
+// The recurrences of a schedule, each with cycles derived by hand.
 
 using namespace tessera;
 using namespace tessera::schedule;
@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::uint8_t no_banks[4] = {};
 
-/// Of the calls of a cycle in which some unit is due: the units.
+/// The units called in the next cycle in which some unit is due.
 std::vector<unsigned> called(Calls& calls) {
     std::vector<unsigned> units;
     while (calls.any())
@@ -92,7 +92,7 @@ TEST_CASE("schedule: states add up, and shares stand in the order of their first
     States told;
     told.until(5, State::starved);
     told.until(9, State::blocked, 3);
-    told.until(7, State::busy);  // past
+    told.until(7, State::busy);  // in the past
     told.until(10, State::waiting_for_memory, 3);
     told.until(12, State::blocked, 3);
     CHECK(told.cycles_in(State::starved) == 5);
@@ -112,7 +112,7 @@ TEST_CASE("schedule: a level counts at the end of a cycle, one at least") {
     level.stay(5, 9);
     level.stay(6, 10);
     CHECK(level.most() == 2);
-    level.stay(9, 12);  // one leaves in the cycle in which it comes
+    level.stay(9, 12);  // one leaves in the cycle in which it arrives
     CHECK(level.most() == 2);
     level.stay(9, 13);
     CHECK(level.most() == 3);
@@ -137,7 +137,7 @@ TEST_CASE("schedule: a stage's item is starved, busy, waits for memory, and is b
     CHECK(told.shares()[3].cycles == 3);
 
     stage.take(6);
-    CHECK(stage.start() == 7);    // its interval after the first
+    CHECK(stage.start() == 7);    // one interval after the first
     CHECK(stage.finish() == 18);  // in order
     stage.depart(18, 1);
     CHECK(stage.level().most() == 2);
@@ -161,7 +161,7 @@ TEST_CASE("schedule: a table with one port reads an entry a cycle, in order") {
     CHECK(table.request(10, no_banks, 1) == 14 + 3);
     CHECK(table.taken() == 10);
     CHECK(table.request(10, no_banks, 1) == 15 + 3);
-    CHECK(table.taken() == 14);  // when the one before is served
+    CHECK(table.taken() == 14);  // when the previous one is served
     CHECK(table.ports().held_up() == 5);
     CHECK(table.ports().bank_slots().front() == 6);
     CHECK(table.ports().level().most() == 3);
@@ -179,7 +179,7 @@ TEST_CASE("schedule: a request waits for a port of each of its banks") {
     CHECK(table.request(0, first, 3) == 3);
     CHECK(table.request(0, both, 2) == 4);
     CHECK(table.ports().held_up() == 3);
-    CHECK(table.request(0, third, 1) == 4);  // its bank is free from cycle 0 on: served in 3, after the one before
+    CHECK(table.request(0, third, 1) == 4);  // its bank is free from cycle 0: served in 3, after the previous one
     CHECK(table.request(0, third, 1) == 5);
 }
 
@@ -188,7 +188,7 @@ TEST_CASE("schedule: with a window requests overlap") {
     constexpr std::uint8_t first[] = {0, 0, 0}, second[] = {1}, third[] = {1};
     CHECK(table.request(0, first, 3) == 3);
     CHECK(table.request(0, second, 1) == 3);  // read at once, answered in order
-    CHECK(table.request(0, third, 1) == 4);   // the request before last has sent its last address in cycle 2
+    CHECK(table.request(0, third, 1) == 4);   // two requests back, the last address was sent in cycle 2
 }
 
 namespace {
@@ -214,7 +214,7 @@ TEST_CASE("schedule: the queue's triangles have priority over the host's") {
     next = source.next(2);  // nothing waits yet
     CHECK(next.from_host);
     CHECK(next.begin == 2);
-    next = source.next(5);  // the first is on its way: starts in 4, arrives in 5
+    next = source.next(5);  // the first is in transit: starts in 4, arrives in 5
     CHECK_FALSE(next.from_host);
     CHECK(next.place == 40);
     CHECK(next.begin == 5);
@@ -262,8 +262,8 @@ TEST_CASE("schedule: last in first out, the newest that has come when one leaves
 }
 
 TEST_CASE("schedule: in a cycle the queue outputs before it takes what Tessellation sends") {
-    // Get Triangle's buffer of one place holds triangle 1, the queue's output triangle 2, until cycle 20. In cycle 20 a third
-    // leaves the store, and with an interval of 2 a fourth in cycle 22.
+    // Until cycle 20 Get Triangle's buffer of one place holds triangle 1, and the queue's output triangle 2. In cycle
+    // 20 a third leaves the store, and with an interval of 2 a fourth in cycle 22.
     SourcePlan plan = queue_of(true);
     plan.queue.interval = 2;
     Source source(plan);
@@ -288,7 +288,7 @@ TEST_CASE("schedule: in a cycle the queue outputs before it takes what Tessellat
         CHECK(begun(31) == 5);
     }
     SECTION("as is one that was sent before and enters the store in that cycle") {
-        source.offer(20, 5);  // before Get Triangle makes room
+        source.offer(20, 5);  // before Get Triangle has room
         source.offer(21, 6);  // an interval later, in cycle 22
         CHECK(begun(20) == 1);
         CHECK(begun(21) == 2);
@@ -334,7 +334,7 @@ TEST_CASE("schedule: in a cycle the first unit that is due is called, again if s
     CHECK(calls.now() == 7);
     CHECK(calls.next() == 2);
     calls.wake(5);
-    calls.wake_at(1, 6);  // past: now
+    calls.wake_at(1, 6);  // past: called now
     CHECK(called(calls) == Units{1, 4, 5});
     CHECK_FALSE(calls.advance());
 }
@@ -395,7 +395,7 @@ TEST_CASE("schedule: readers of a table with a full buffer take turns") {
     CHECK(readers[0].answers == Answers{0 + 1 + 3, 2 + 1 + 3, 8 + 1 + 3});
     CHECK(readers[1].answers == Answers{4 + 1 + 3});
     CHECK(readers[2].answers == Answers{6 + 1 + 3});
-    CHECK(readers[0].taken == 1);  // later than it was offered
+    CHECK(readers[0].taken == 1);  // later than the offer
     CHECK(table.ports().held_up() == 8);
     CHECK(table.ports().level().items() == 5);
     CHECK(table.ports().entries() == 5);

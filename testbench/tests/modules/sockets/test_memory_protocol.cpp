@@ -8,7 +8,7 @@
 #include "testbench/tests/support/memory_protocol.h"
 #include "testbench/tests/support/timed_modules.h"
 
-// The tables' sockets and the ports that read them: responses, direct access, breaches by either side.
+// The tables' sockets and the ports that read them: responses, direct access, violations by either side.
 
 using namespace tessera;
 using namespace tessera::testing;
@@ -71,7 +71,7 @@ TEST_CASE("table memory: every response, blocking and non-blocking") {
         other.command = command;
         bench.expect(other, tlm::TLM_COMMAND_ERROR_RESPONSE);
     }
-    CHECK(bench.memory.transactions() == counted);  // only what was read
+    CHECK(bench.memory.transactions() == counted);  // only reads are counted
 }
 
 TEST_CASE("table memory: a gather with one address outside is an address error") {
@@ -179,7 +179,7 @@ TEST_CASE("table memory: a plain read takes a port of its own address's bank") {
 TEST_CASE("table memory: the delay of a request is added before it is served") {
     TableBench bench;
     MemoryRequest request = read_of(bench.data, layout.base);
-    // 25 ps on: in cycle 3; answered a latency of 1 later
+    // 25 ps later, in cycle 3; answered after a latency of 1
     CHECK(bench.initiator.send(request, tlm::BEGIN_REQ, sc_time(25, SC_PS)) == tlm::TLM_ACCEPTED);
     sc_core::sc_start(sc_time(29, SC_PS));
     CHECK(bench.initiator.back.empty());
@@ -201,17 +201,17 @@ TEST_CASE("table memory: breaches of an initiator are errors that name the memor
         CHECK_THAT(error_of([&] { bench.initiator.send(first, phase); }),
                    Contains("memory.socket") && Contains("other than BEGIN_REQ"));
     CHECK(bench.initiator.send(first, tlm::BEGIN_REQ) == tlm::TLM_UPDATED);    // in the buffer
-    CHECK(bench.initiator.send(second, tlm::BEGIN_REQ) == tlm::TLM_ACCEPTED);  // waits
+    CHECK(bench.initiator.send(second, tlm::BEGIN_REQ) == tlm::TLM_ACCEPTED);  // has to wait
     CHECK_THAT(error_of([&] { bench.initiator.send(third, tlm::BEGIN_REQ); }),
                Contains("memory.socket") && Contains("BEGIN_REQ before END_REQ"));
-    bench.initiator.reply = tlm::TLM_ACCEPTED;  // wants to end the response itself
+    bench.initiator.reply = tlm::TLM_ACCEPTED;  // would end the response itself, later
     CHECK_THAT(error_of([] { sc_core::sc_start(); }),
                Contains("memory.socket") && Contains("BEGIN_RESP was not completed"));
 }
 
 namespace {
 
-/// A MemoryPort of three requests before a target that the test plays.
+/// A MemoryPort for three requests, connected to a target that the test controls.
 struct PortBench : sc_core::sc_module {
     CycleScheduler clock{"clock", period};
     MemoryPort port{"port", 4, false};
@@ -252,7 +252,7 @@ TEST_CASE("memory port: exclusion, requests under way, answers in order") {
     CHECK(bench.port.answered());
     bench.port.pop_answer();
     CHECK_FALSE(bench.port.answered());
-    CHECK_FALSE(bench.port.may_request());  // one is still on offer
+    CHECK_FALSE(bench.port.may_request());  // one is still offered
     bench.target.send_back(*bench.target.come[2], tlm::END_REQ);
     CHECK(bench.port.may_request());
     bench.answer(1);
@@ -324,7 +324,7 @@ TEST_CASE("memory port: an answer by return that is none is an error") {
 
 namespace {
 
-/// A blocking memory of four entries whose answers about direct access are the test's.
+/// A blocking memory of four entries whose responses about direct access are set by the test.
 struct DirectTarget : sc_core::sc_module {
     tlm_utils::passthrough_target_socket<DirectTarget, 32, MemoryProtocol> socket{"socket"};
     std::vector<unsigned char> bytes = std::vector<unsigned char>(16);
@@ -391,7 +391,7 @@ TEST_CASE("memory port: reads are transactions until direct access is granted, a
     CHECK(target.asked == 3);
     CHECK(target.transactions == 3);
     target.last = 15;
-    read();  // asks, and is granted
+    read();  // requests it, and it is granted
     read();
     read();
     CHECK(target.asked == 4);

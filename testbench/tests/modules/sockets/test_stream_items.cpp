@@ -9,13 +9,13 @@
 #include "testbench/tests/support/expect_section.h"
 #include "testbench/tests/support/timed_modules.h"
 
-// The items of the streams: each goes through its packed form and back, and modules/sockets/README.md lists its fields.
+// The items of the streams: each survives packing and unpacking, and modules/sockets/README.md lists its fields.
 
 using namespace tessera;
 
 namespace {
 
-/// Sets each field to any value that its bits hold: often an end of their range.
+/// Sets each field to a random value of its width, often an extreme.
 struct Filler {
     Random& random;
 
@@ -33,7 +33,7 @@ struct Filler {
     }
 };
 
-/// All values, in order, and the fields' widths.
+/// Collects all values in order, and the fields' widths.
 struct Lister {
     std::vector<std::int64_t> values;
     std::vector<int> bits;
@@ -98,7 +98,7 @@ void check_round_trips(const datapath::Formats& formats, int tag_bits, Random& r
     }
 }
 
-/// Each field: its name, how many alike, and what they mean.
+/// The fields: name, number of equal ones, and meaning.
 struct Table {
     std::string text;
     datapath::Field last{};
@@ -115,7 +115,7 @@ struct Table {
     }
     std::uint32_t annotation(const char*, std::uint32_t value) const { return value; }
 
-    /// Of three vertices or edges alike the first stands for all.
+    /// The first of three equal vertices or edges represents all.
     void finish() {
         if (alike > 0 && last.index <= 0)
             text += "| " + std::string(last.name) + (last.index < 0 ? "" : " of each") + " | " +
@@ -181,7 +181,7 @@ TEST_CASE("widths of items in the default formats, by hand") {
     CHECK(item_bits<Family>(formats, 6) == 6 + 6 * 522 + 2 + 3 + 3 + 2);
 }
 
-// One bit more wherever tests are named: in split_by, and in each edge's tests.
+// One more bit in each field that lists tests: in split_by, and in each edge's tests.
 TEST_CASE("widths of items in the default formats, with a Highlight Test") {
     datapath::Formats formats;
     formats.highlight_tag = true;
@@ -190,7 +190,7 @@ TEST_CASE("widths of items in the default formats, with a Highlight Test") {
     CHECK(item_bits<DecidedTriangle>(formats, 6) == 2991 + 1 + 3);
 }
 
-// What the item does not describe, here which vertices are new, does not come through.
+// A value outside the item's description, here the set of new vertices, is not transferred.
 TEST_CASE("an output sends its items through their packed form where the design says so, in both modes") {
     using testing::Sink;
     CycleScheduler clock("clock", sc_core::sc_time(10, sc_core::SC_PS));
@@ -237,12 +237,12 @@ TEST_CASE("an output sends its items through their packed form where the design 
                Catch::Contains("through_wires") && Catch::Contains("a value that its field cannot hold"));
 }
 
-// One triangle in Get Triangle; a place at the input and a register stage each of Calculate New P, 7 of Displace Vertex
-// (one more for the map's cycle), 20 of Transform; one at Pass or Tessellate's input; and its 8 places.
+// One triangle in Get Triangle; in Calculate New P, Displace Vertex and Transform one place at the input and 1, 7
+// (including the map's cycle) and 20 register stages; one at Pass or Tessellate's input; and its 8 places.
 TEST_CASE("a tag tells apart all triangles between Get Triangle and Pass or Tessellate") {
     Design design;
     CHECK(triangles_ahead_of_parts(design) == 1 + (1 + 1) + (1 + 7) + (1 + 20) + 1);
-    CHECK(tag_bits(design) == 6);  // 33, one on offer, and 8
+    CHECK(tag_bits(design) == 6);  // 33, one offered, and 8
     design.timing.pass_or_tessellate.buffer = 30;
     CHECK(tag_bits(design) == 6);
     design.timing.pass_or_tessellate.buffer = 31;

@@ -5,7 +5,7 @@
 
 #include "testbench/tests/support/timed_modules.h"
 
-// The streams' protocol: exclusion, END_REQ withheld, annotated delays, random stalls, and every breach by its name.
+// The streams' protocol: exclusion, withheld END_REQ, annotated delays, random stalls, and each violation's message.
 
 using namespace tessera;
 using namespace tessera::testing;
@@ -18,7 +18,7 @@ namespace {
 
 const sc_time period(10, SC_PS);
 
-/// An input of a given depth whose owner takes nothing but what the test pops.
+/// An input of a given depth from which only the test takes items.
 struct Holder : sc_core::sc_module {
     CycleScheduler clock{"clock", period};
     StreamInput<int> in{"in"};
@@ -35,7 +35,7 @@ struct Holder : sc_core::sc_module {
     }
 };
 
-/// An output whose owner notes when it is called.
+/// An output whose owner records when it is called.
 struct Offerer : sc_core::sc_module {
     CycleScheduler clock{"clock", period};
     StreamOutput<int> out{"out"};
@@ -82,12 +82,12 @@ TEST_CASE("stream input: takes as many items as its buffer holds, the next waits
     CHECK(holder.in.holds_back());
     CHECK(producer.ended.empty());
     holder.clock.wake(holder.owner);
-    sc_core::sc_start(sc_time(1, SC_PS));  // no room: it stays where it is
+    sc_core::sc_start(sc_time(1, SC_PS));  // no room: the item stays with the producer
     CHECK(producer.ended.empty());
-    items[2] = 20;  // the producer's still: copied with END_REQ, not before
+    items[2] = 20;  // still the producer's: the item is copied with END_REQ, not before
 
     CHECK(holder.in.front() == 0);
-    holder.in.pop();  // lets it in
+    holder.in.pop();  // makes room for it
     REQUIRE(producer.ended.size() == 1);
     CHECK(producer.ended[0].first == &items[2]);
     CHECK_FALSE(holder.in.holds_back());
@@ -105,7 +105,7 @@ TEST_CASE("stream input: the delay of nb_transport_fw is added before the item i
     sc_core::sc_start(sc_time(100, SC_PS));  // cycle 10
     int item = 7;
     tlm::tlm_phase phase = tlm::BEGIN_REQ;
-    // 21 ps from cycle 10 on: there in cycle 13, cycles rounded up; until then it waits, room or not
+    // 21 ps after cycle 10 it arrives in cycle 13, rounded up; until then it waits, even if there is room
     CHECK(producer.offer(item, phase, sc_time(21, SC_PS)) == tlm::TLM_ACCEPTED);
     CHECK(holder.in.empty());
     holder.clock.wake(holder.owner);
@@ -161,18 +161,18 @@ TEST_CASE("stream output: deliver offers an item once, and says once that it is 
     CHECK_FALSE(out.deliver(item));
     CHECK_FALSE(out.deliver(item));  // a second BEGIN_REQ would be a breach
     target.send_back(item, tlm::END_REQ, SC_ZERO_TIME);
-    target.status = tlm::TLM_COMPLETED;  // an answer to a BEGIN_REQ that would be a breach
+    target.status = tlm::TLM_COMPLETED;  // a response to BEGIN_REQ that would be a violation
     CHECK(out.deliver(item));
     target.status = tlm::TLM_UPDATED;
     target.phase_back = tlm::END_REQ;
-    CHECK(out.deliver(item));  // the next, taken at once
+    CHECK(out.deliver(item));  // the next, accepted at once
     target.status = tlm::TLM_ACCEPTED;
     CHECK_FALSE(out.deliver(item));
 }
 
 TEST_CASE("stream: one item a cycle is never taken twice, lost or reordered behind a consumer of one place") {
-    // The consumer takes an item every cycle in which it is called; producer and consumer have no latency: all 100
-    // items go over in the cycle they are offered, one at a time.
+    // The consumer takes an item in every cycle in which it is called; producer and consumer have no latency: all 100
+    // items are transferred in the cycle in which they are offered, one at a time.
     CycleScheduler clock("clock", period);
     Sink<int> sink("sink", clock);
     Driver<int> driver("driver", clock);
@@ -185,7 +185,7 @@ TEST_CASE("stream: one item a cycle is never taken twice, lost or reordered behi
 }
 
 TEST_CASE("stream: an item that is always stalled one cycle comes through every cycle") {
-    // longest = 1 and 1000 per mille: item k, offered when item k - 1 was taken in cycle k, is taken in cycle k + 1
+    // longest = 1 and 1000 per mille: item k is offered when item k - 1 is taken, in cycle k, and taken in cycle k + 1
     CycleScheduler clock("clock", period);
     Sink<int> sink("sink", clock, {1, 1000, 1});
     Driver<int> driver("driver", clock);
@@ -212,7 +212,7 @@ TEST_CASE("stream: random stalls hold back the share of items asked for, for up 
         REQUIRE(wait <= 8);
         ++waited[wait];
     }
-    // 1200 of 4000 expected, standard deviation 29; each of 8 lengths 150, deviation 12: five deviations either way
+    // 1200 of 4000 expected, standard deviation 29; each of 8 lengths 150, deviation 12: tolerance of five deviations
     const unsigned stalled = 4000 - waited[0];
     CHECK(stalled > 1200 - 145);
     CHECK(stalled < 1200 + 145);
@@ -272,7 +272,7 @@ TEST_CASE("stream: every breach of a consumer is an error that names the produce
     int item = 1;
     CHECK_THAT(error_of([&] { target.send_back(item, tlm::END_REQ, SC_ZERO_TIME); }),
                Contains("offerer.out") && Contains("END_REQ that was due"));  // nothing is on offer
-    // answers that are none
+    // invalid responses
     target.status = tlm::TLM_COMPLETED;
     CHECK_THAT(error_of([&] { out.send(item); }), Contains("offerer.out: BEGIN_REQ was answered by neither"));
     target.status = tlm::TLM_UPDATED;
@@ -306,7 +306,7 @@ TEST_CASE("stream: no memory, so neither direct nor debug access") {
     tlm::tlm_dmi dmi;
     CHECK_FALSE(offerer.out->get_direct_mem_ptr(item, dmi));
     CHECK(offerer.out->transport_dbg(item) == 0);
-    sink.in->invalidate_direct_mem_ptr(0, 7);  // of which it has none: nothing happens
+    sink.in->invalidate_direct_mem_ptr(0, 7);  // it has none: no effect
     CHECK(sink.items.empty());
 }
 

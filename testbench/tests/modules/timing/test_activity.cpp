@@ -11,7 +11,7 @@
 #include "modules/units/triangle_store.h"
 #include "testbench/tests/support/timed_modules.h"
 
-// What units keep their books and their items with.
+// The records that units keep of their activity and their items.
 
 using namespace tessera;
 using namespace tessera::testing;
@@ -25,7 +25,7 @@ struct Neighbour : sc_core::sc_module {
     explicit Neighbour(const sc_core::sc_module_name& name) : sc_module(name) {}
 };
 
-/// Outputs in a module, as a unit has them; their consumers take nothing.
+/// Outputs in a module, as in a unit; their consumers take nothing.
 struct ForkBench : sc_core::sc_module {
     std::vector<std::unique_ptr<StreamOutput<int>>> outputs;
     std::vector<std::unique_ptr<BareTarget<int>>> targets;
@@ -119,7 +119,7 @@ TEST_CASE("fork: says who holds it up, and has four outputs at most") {
     CHECK_FALSE(bench.fork.deliver(item));
     CHECK(bench.fork.blocked_by() == bench.targets[2].get());
     for (const auto& target : bench.targets)
-        target->status = tlm::TLM_COMPLETED;  // a second offer would be a breach
+        target->status = tlm::TLM_COMPLETED;  // a second offer would be a violation
     CHECK_FALSE(bench.fork.deliver(item));
     bench.targets[2]->send_back(item, tlm::END_REQ, sc_core::SC_ZERO_TIME);
     CHECK(bench.fork.deliver(item));
@@ -178,14 +178,14 @@ TEST_CASE("per triangle: found by tag, closed in any order, and it grows") {
     CHECK(kept.size() == 3);
     CHECK(kept.find_or_open(8) == 80);
     kept.close(8);
-    kept.close(8);  // has gone
+    kept.close(8);  // has left
     CHECK(kept.size() == 2);
     CHECK(kept.oldest() == 70);
     CHECK(*kept.find(9) == 90);
     kept.close_oldest();
     CHECK(kept.oldest() == 90);
     CHECK(kept.find(7) == nullptr);
-    CHECK(kept.find_or_open(7) == 0);  // anew
+    CHECK(kept.find_or_open(7) == 0);  // opened again
 }
 
 TEST_CASE("unit numbers: the units of a machine, anything else is other, nothing is nobody") {

@@ -7,7 +7,7 @@
 
 #include "testbench/tests/support/timed_modules.h"
 
-// The clock of timed mode alone: who is called when, and in which order.
+// The clock of timed mode alone: which processes are called when, and in which order.
 
 using namespace tessera;
 using sc_core::SC_PS;
@@ -18,7 +18,7 @@ using Calls = std::vector<std::pair<char, std::uint64_t>>;
 
 namespace {
 
-/// Three callers on a clock of 10 ps, attached in the order a, b, c; each notes its calls.
+/// Three callers on a clock of 10 ps, attached in the order a, b, c; each records its calls.
 struct Three {
     CycleScheduler clock{"clock", sc_time(10, SC_PS)};
     Caller a{clock}, b{clock}, c{clock};
@@ -39,7 +39,7 @@ TEST_CASE("clock: within a cycle the order is that of attachment") {
     t.clock.wake_at(t.c, 5);
     t.clock.wake_at(t.a, 5);
     t.clock.wake_at(t.b, 5);
-    t.clock.wake_at(t.a, 5);  // asked twice, called once
+    t.clock.wake_at(t.a, 5);  // requested twice, called once
     t.clock.wake_at(t.b, 2);
     sc_core::sc_start();
     CHECK(t.calls == Calls{{'b', 2}, {'a', 5}, {'b', 5}, {'c', 5}});
@@ -55,7 +55,7 @@ TEST_CASE("clock: a unit woken in the present cycle is called in it, an earlier 
         if (woken++ == 0) {
             t.clock.wake(t.c);
             t.clock.wake(t.a);
-            t.clock.wake_at(t.a, 3);  // the present cycle too: past ones cannot be had
+            t.clock.wake_at(t.a, 3);  // the present cycle instead, since it has passed
             t.clock.wake_at(t.b, 8);
         }
     };
@@ -66,7 +66,7 @@ TEST_CASE("clock: a unit woken in the present cycle is called in it, an earlier 
 
 TEST_CASE("clock: cycles nobody asked for are skipped, near and far") {
     Three t;
-    // the table covers 1024 cycles from the first on; both sides of its edge, and of the second turn's
+    // the table covers 1024 cycles from the first; both sides of its limit, and of the second turn's
     const std::vector<std::uint64_t> asked{0, 1, 63, 64, 65, 1022, 1023, 1024, 1025, 2047, 2048, 5000, 1'000'000};
     for (const std::uint64_t cycle : asked)
         t.clock.wake_at(t.a, cycle);
@@ -83,8 +83,8 @@ TEST_CASE("clock: cycles nobody asked for are skipped, near and far") {
 }
 
 TEST_CASE("clock: wake-ups from within a cycle reach every distance") {
-    // each call asks for the next, a distance further on; what is asked for far ahead must not be called a turn of the
-    // table early, nor lost when it comes into the table's reach
+    // each call requests the next, a given distance ahead; a distant request must not be called one turn of the table
+    // early, nor be lost when it comes within the table's range
     Three t;
     const std::vector<std::uint64_t> distances{1, 2, 64, 960, 1023, 1024, 1025, 2048, 3000, 1, 1023, 4096};
     std::size_t next = 0;
@@ -132,7 +132,7 @@ TEST_CASE("clock: from outside a cycle a unit is woken in the first that begins 
     CHECK(t.calls == Calls{{'a', 5}, {'b', 5}});
     CHECK(t.clock.idle());
     t.clock.wake_at(t.c, 9);
-    t.clock.wake_at(t.a, 7);  // earlier than what is scheduled
+    t.clock.wake_at(t.a, 7);  // earlier than the scheduled cycle
     sc_core::sc_start();
     CHECK(t.calls == Calls{{'a', 5}, {'b', 5}, {'a', 7}, {'c', 9}});
 }
@@ -141,7 +141,7 @@ TEST_CASE("clock: after a long pause near and far wake-ups from outside come in 
     Three t;
     t.clock.wake_at(t.a, 3);
     sc_core::sc_start(sc_time(50'000, SC_PS));  // cycle 5000: several turns of the table after the last call
-    t.clock.wake_at(t.b, 7500);                 // beyond the table from now, too
+    t.clock.wake_at(t.b, 7500);                 // also beyond the table's current range
     t.clock.wake_at(t.c, 5010);
     t.clock.wake_at(t.a, 6023);
     t.clock.wake_at(t.b, 6024);
@@ -180,7 +180,7 @@ TEST_CASE("clock: a busy cycle below the bound is none") {
 
 TEST_CASE("clock: without progress for a bound it stops the simulation, with progress it does not") {
     Three t;
-    // progress in cycle 100, none later; b is woken in every cycle and would go on for ever
+    // progress in cycle 100, none later; b is woken in every cycle and would continue for ever
     t.clock.halt_without_progress_for(50);
     t.b.on_step = [&] {
         if (t.clock.cycle() == 40 || t.clock.cycle() == 80 || t.clock.cycle() == 100)
@@ -206,7 +206,7 @@ TEST_CASE(
     "clock: ahead of simulated time it calls the same units, waits for other processes, and ends when it should") {
     struct Other : sc_core::sc_module {
         const Three& t;
-        std::vector<std::pair<sc_time, std::size_t>> calls;  // when, and how many calls of units had been made
+        std::vector<std::pair<sc_time, std::size_t>> calls;  // the time, and how many calls of units had been made
 
         Other(const sc_core::sc_module_name& name, const Three& units) : sc_module(name), t(units) {
             SC_HAS_PROCESS(Other);
@@ -232,7 +232,7 @@ TEST_CASE(
     sc_core::sc_start();
     REQUIRE(t.calls.size() == 20);
     CHECK(t.calls.back() == std::pair<char, std::uint64_t>('a', 38));
-    // Five calls without a return to the kernel, then two before the other process; then five by five.
+    // Five calls without a return to the kernel, two before the other process, then groups of five.
     std::vector<sc_time> expected;
     for (const auto& [cycle, calls] : {std::pair{0, 5}, {10, 2}, {14, 5}, {24, 5}, {34, 3}})
         expected.insert(expected.end(), static_cast<std::size_t>(calls), sc_time(10 * cycle, SC_PS));
@@ -248,7 +248,7 @@ TEST_CASE("clock: a period of zero is an error") {
 
 namespace {
 
-/// Sixteen cycles, of which SystemC's time is full.
+/// A clock with sixteen cycles in SystemC's range of time.
 struct LongClock {
     CycleScheduler clock{"clock", sc_time::from_value(std::uint64_t{1} << 60)};
     Caller a{clock}, b{clock};

@@ -5,7 +5,7 @@
 #include "modules/timing/pending_item.h"
 #include "modules/timing/ring.h"
 
-// The ring that buffers are made of, and the item that waits before a full one.
+// The ring on which buffers are based, and the item that waits in front of a full one.
 
 using namespace tessera;
 
@@ -31,7 +31,7 @@ TEST_CASE("ring: items leave in the order they came, round and round") {
     }
     ring.pop();
     CHECK(ring.empty());
-    CHECK(ring.back() == pushed - 1);  // the last one, though it has left
+    CHECK(ring.back() == pushed - 1);  // the last one, although it has left
 }
 
 TEST_CASE("ring: grown, it has twice the places and its items in their order") {
@@ -39,7 +39,7 @@ TEST_CASE("ring: grown, it has twice the places and its items in their order") {
     for (int k = 0; k < 3; ++k)
         ring.push(k);
     ring.pop();
-    ring.push(3);  // the oldest is not in the first place
+    ring.push(3);  // the oldest is not in the first slot
     ring.grow();
     CHECK(ring.capacity() == 6);
     for (int k = 4; k < 7; ++k)
@@ -70,7 +70,7 @@ TEST_CASE("ring: a capacity of one") {
 TEST_CASE("ring: at both ends") {
     Ring<int> ring(3);
     ring.push(1);
-    ring.push_front() = 0;  // before the first place
+    ring.push_front() = 0;  // before the first slot
     ring.push(2);
     for (int k = 0; k < 3; ++k)
         CHECK(ring.at(static_cast<std::size_t>(k)) == k);

@@ -4,8 +4,8 @@
 #include "testbench/tests/support/timed_checks.h"
 #include "testbench/tests/support/timed_modules.h"
 
-// The clock's period under time resolutions of SystemC other than its default, 1 ps. A program of its own:
-// the constants of other tests fix the resolution before main.
+// The clock's period with time resolutions of SystemC other than the default of 1 ps. A separate program, since the
+// constants of other tests fix the resolution before main.
 
 using namespace tessera;
 using namespace tessera::testing;
@@ -47,7 +47,7 @@ void expect_time(double resolution, sc_core::sc_time_unit unit) {
     Simulation simulation(setup, 1'000'000);
     CHECK(simulation.run().empty());
     CHECK(simulation.cycles() > 1000);
-    // 5000 ps a cycle
+    // 5000 ps per cycle
     CHECK(sc_core::sc_time_stamp() == sc_time(5.0 * static_cast<double>(simulation.cycles() - 1), sc_core::SC_NS));
 }
 

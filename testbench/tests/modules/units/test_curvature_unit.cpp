@@ -12,8 +12,7 @@
 #include "testbench/tests/support/case_table.h"
 #include "testbench/tests/support/timed_modules.h"
 
-// The Curvature Test alone, through its sockets: each result is the one that follows from the tables, whenever their
-// entries come.
+// The Curvature Test alone, through its sockets: each result follows from the tables, whenever their entries arrive.
 
 using namespace tessera;
 using namespace tessera::testing;
@@ -43,7 +42,7 @@ datapath::Registers registers_of(const Row& row) {
     return registers;
 }
 
-/// Fills its memories once the modules are connected, before the first cycle.
+/// Fills its memories after the modules are connected, before the first cycle.
 struct Bench : sc_core::sc_module {
     datapath::Registers registers;
     Design design;
@@ -79,7 +78,7 @@ struct Bench : sc_core::sc_module {
     datapath::TexCoord near(const datapath::TexCoord& t, std::uint32_t reach) {
         return {t.u + random.natural(0, reach), t.v + random.natural(0, reach)};
     }
-    /// Short and long edges, first end anywhere.
+    /// Short and long edges, with the first end anywhere.
     HeightOperands edge(unsigned number) {
         HeightOperands made;
         made.tag.part = static_cast<std::uint8_t>(first_edge_part + number % 3);
@@ -94,7 +93,7 @@ struct Bench : sc_core::sc_module {
         const std::uint32_t x = t.u >> 12, y = t.v >> 12;
         return codes[std::size_t{repeat ? y % 13 : std::min(y, 12u)} * 21 + (repeat ? x % 21 : std::min(x, 20u))];
     }
-    /// By the formula of golden/ALGORITHM.md 4.8, in integers.
+    /// The formula of golden/ALGORITHM.md 4.8, in integers.
     bool expected(const HeightOperands& e) const {
         const auto difference = [](std::uint32_t a, std::uint32_t b) { return a > b ? a - b : b - a; };
         const std::uint32_t du = difference(e.t_i.u, e.t_j.u), dv = difference(e.t_i.v, e.t_j.v);

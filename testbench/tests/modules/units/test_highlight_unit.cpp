@@ -31,8 +31,8 @@ constexpr datapath::Direction up{0, 0, 1 << 14};
 constexpr datapath::Direction at_half{9830, 0, 13107};
 constexpr datapath::Direction tilted{3000, 0, 16107};  // 3000 from up, 0.90 from H: outside
 
-/// The unit, its memory full of normals straight up, and three edges whose midpoints so have N' = up:
-/// (at_half, up): both tests; (up, tilted): neither, it lies outside; (tilted, at_half): both.
+/// The unit, with its memory full of upright normals, and three edges whose midpoints therefore have N' = up: (at_half,
+/// up): both tests; (up, tilted): neither, it lies outside; (tilted, at_half): both.
 struct Bench {
     datapath::Registers registers;
     Design design;
@@ -77,7 +77,7 @@ struct Bench {
                    std::vector<std::uint64_t>(4, datapath::pack_normal(up, registers.formats.normal.bits)));
     }
 
-    /// Timed: one edge after another, and the cycles in which they come out.
+    /// Timed mode: edges one after another; returns the cycles in which they leave.
     std::vector<std::uint64_t> run_timed() {
         driver.items = edges;
         sc_core::sc_start(sc_core::SC_ZERO_TIME);
@@ -100,7 +100,7 @@ const std::vector<int> without_highlight{datapath::normal_bit, 0, datapath::norm
 
 }  // namespace
 
-// Taken in cycle 0, read in 1, the compare 9 later; another edge each cycle.
+// Taken in cycle 0, read in 1, compared 9 later; another edge each cycle.
 TEST_CASE("Normal Test unit without a Highlight Test: 10 cycles with the read") {
     Bench bench(false, {});
     CHECK(bench.run_timed() == std::vector<std::uint64_t>{10, 11, 12});
@@ -123,13 +123,13 @@ TEST_CASE("Normal Test unit with a Highlight Test of 7 cycles") {
 
 TEST_CASE("Normal Test unit with a Highlight Test, blocking transport: the same bits, one cycle more") {
     Bench bench(true, {});
-    bench.registers.tests.normal_threshold = 16384;  // so that the Highlight Test is alone
+    bench.registers.tests.normal_threshold = 16384;  // so that only the Highlight Test can ask for a split
     sc_core::sc_start(sc_core::SC_ZERO_TIME);
     bench.fill_memory();
     for (NormalOperands& edge : bench.edges) {
         sc_core::sc_time delay = sc_core::SC_ZERO_TIME;
         bench.driver.out.transport(edge, delay);
-        // a read of a cycle, and 9 and 1
+        // one cycle for the read, then 9 and 1
         CHECK(bench.sink.delays.back() == 11 * bench.clock.period());
     }
     CHECK(bench.tests() == std::vector<int>{datapath::highlight_bit, 0, datapath::highlight_bit});

@@ -17,8 +17,8 @@
 #include "testbench/tests/support/case_table.h"
 #include "testbench/tests/support/timed_modules.h"
 
-// Displace Vertex and the Normal Test with a bilinear filter, alone, through their sockets: each result is the one that
-// follows from the map, whenever its entries come.
+// Displace Vertex and the Normal Test with a bilinear filter, alone, through their sockets: each result follows from
+// the map, whenever its entries arrive.
 
 using namespace tessera;
 using namespace tessera::testing;
@@ -55,14 +55,14 @@ Design design_of(const Row& row) {
     return design;
 }
 
-/// Calls a function once the modules are connected, before the first cycle.
+/// Calls a function after the modules are connected, before the first cycle.
 struct AtStart : sc_core::sc_module {
     std::function<void()> run;
     explicit AtStart(const sc_core::sc_module_name& name) : sc_module(name) {}
     void start_of_simulation() override { run(); }
 };
 
-/// The maps as arrays, and what a unit is built from.
+/// The maps as arrays, and the data from which a unit is built.
 struct Bench {
     datapath::Registers registers;
     Design design;
@@ -95,7 +95,7 @@ struct Bench {
         port.bind(*made);
         return made;
     }
-    /// Those around t, found by their places instead of addresses.
+    /// The entries around t, found by texel position instead of address.
     std::vector<std::uint64_t> around(const datapath::TexCoord& t, const std::vector<std::uint64_t>& map) const {
         std::vector<std::uint64_t> entries;
         const auto inside = [&](std::int64_t index, std::int64_t size) {
@@ -179,7 +179,7 @@ const CaseTable displaced("a bilinear filter in Displace Vertex, ", rows, [](con
     CHECK(map->transactions() == 4 * items);
     CHECK((!normals || normals->transactions() == 4 * vertices));
     if (row.name == "one port") {
-        // Taken in cycle 0, addresses in 0 to 3, data in 4, out 6 later; the next four cycles after.
+        // Taken in cycle 0, addresses in 0 to 3, data in 4, out 6 later; the next four cycles later.
         CHECK(sink.cycles[0] == 3 + 1 + 6);
         CHECK(sink.cycles[items - 1] == sink.cycles[0] + 4 * (items - 1));
     }

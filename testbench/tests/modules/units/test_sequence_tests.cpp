@@ -8,7 +8,7 @@
 #include "modules/units/edge_tests/sequence_tests.h"
 #include "testbench/tests/support/timed_modules.h"
 
-// Sequence Tests alone, through its sockets. The two table tests are stubs that answer with given bits.
+// Sequence Tests alone, through its sockets. The two table tests are stubs that respond with given bits.
 
 using namespace tessera;
 using namespace tessera::testing;
@@ -17,7 +17,7 @@ namespace {
 
 constexpr unsigned combinations = 64;  // of the six tests
 
-/// Edge number k: the tests say `k % combinations`; from `combinations` on the edge is of a base triangle.
+/// Edge number k has the results `k % combinations`; from `combinations` on it belongs to a base triangle.
 unsigned says(const PartTag& tag) {
     return tag.triangle % combinations;
 }
@@ -47,7 +47,7 @@ HeightResult answer(const HeightOperands& edge) {
     return {edge.tag, (says(edge.tag) & datapath::summed_height_bit) != 0};
 }
 
-/// In place of a table test: answers edges, keeps what it was sent.
+/// Replaces a table test: answers edges and records what it receives.
 template <class Operands, class Result>
 class StubTest : public Stage<Operands, Result> {
   public:
@@ -138,7 +138,7 @@ struct Bench {
         normal_operands.items.push_back(vertex);
     }
 
-    /// Each edge once, in order, with what was evaluated and nothing else.
+    /// Requires each edge once, in order, with the evaluated tests and nothing else.
     void expect_edges(unsigned edges) const {
         REQUIRE(sink.items.size() == edges);
         for (unsigned k = 0; k < edges; ++k) {
@@ -167,7 +167,7 @@ void run_all_combinations(const Timing& timing) {
     }
     sc_core::sc_start();
     bench.expect_edges(2 * combinations);
-    CHECK(bench.normal_test.asked.size() == normal + 1);  // and the vertex
+    CHECK(bench.normal_test.asked.size() == normal + 1);  // one more for the vertex
     CHECK(bench.summed_height_test.asked.size() == summed_height);
     CHECK(bench.unit.describe_contents().empty());
     CHECK(bench.unit.idle());
@@ -202,7 +202,7 @@ TEST_CASE("a design without a Summed Height Test never asks for it") {
     CHECK(bench.sink.items[0].found.evaluated == (datapath::all_tests & ~datapath::summed_height_bit));
 }
 
-// All operands are there in cycle 0, the unit takes an edge a cycle. The stubs take 5 and 7 cycles.
+// All operands are present in cycle 0; the unit takes an edge per cycle. The stubs take 5 and 7 cycles.
 TEST_CASE("an edge's cycles are those of the tests it goes to, one after another") {
     const unsigned gates = datapath::gating_tests;
     Bench bench;

@@ -9,7 +9,7 @@
 #include "modules/units/triangle_queue.h"
 #include "testbench/tests/support/timed_modules.h"
 
-// The Triangle Queue alone, spilling: what goes in comes out, and first in first out in that order.
+// The Triangle Queue alone, spilling: everything that enters leaves, and first in first out in that order.
 
 using namespace tessera;
 using namespace tessera::testing;
@@ -86,7 +86,7 @@ TEST_CASE("triangle queue: first in first out, through off-chip memory and back"
     for (const auto& bench : benches) {
         INFO(bench->queue.name());
         CHECK(bench->queue.spilled() > 0);
-        CHECK(bench->queue.spilled() < triangles);  // it was empty off chip now and then
+        CHECK(bench->queue.spilled() < triangles);  // the off-chip part was empty now and then
         CHECK(bench->queue.spilled() == bench->queue.refilled());
         CHECK(bench->queue.on_chip_high_water_mark() <= 4);
         CHECK(bench->came() == in_order());
@@ -123,13 +123,13 @@ TEST_CASE("triangle queue: a triangle that does not fit its record is an error, 
     Bench bench("spills", clock, registers, design, 0, StallParameters{1, 1000, 1000});
     for (datapath::Triangle& triangle : bench.driver.items)
         triangle.vertices[0].generation = 255;
-    // In a debug build, which packs every item, its stream notices first.
+    // In a debug build, which packs every item, its stream detects it first.
     CHECK_THAT(error_of([] { sc_core::sc_start(); }),
                Catch::Contains("a spilled triangle does not fit") ||
                    Catch::Contains("to_get_triangle: a value that its field cannot hold"));
 }
 
-// Nobody takes what the queue offers, for far longer than the test looks.
+// The queue's output is not taken for far longer than the test runs.
 TEST_CASE("triangle queue: the host may send while fewer triangles wait than the watermark says") {
     CycleScheduler clock("clock", sc_core::sc_time(5, sc_core::SC_NS));
     const datapath::Registers registers;
@@ -147,6 +147,6 @@ TEST_CASE("triangle queue: the host may send while fewer triangles wait than the
         INFO(queue.name());
         REQUIRE(queue.waiting() == waiting);
         CHECK(queue.below_watermark() == (waiting < 3));
-        CHECK(benches[waiting]->level.items.size() == (waiting < 3 ? 0 : 1));  // told when it changes
+        CHECK(benches[waiting]->level.items.size() == (waiting < 3 ? 0 : 1));  // reported on each change
     }
 }

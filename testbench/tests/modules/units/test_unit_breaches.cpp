@@ -4,7 +4,7 @@
 #include "modules/units/pass_or_tessellate.h"
 #include "testbench/tests/support/timed_modules.h"
 
-// Units alone, given what no machine that is in order gives them: they say so, and go on with nothing.
+// Single units, given inputs that no correct machine produces: they report an error and pass nothing on.
 
 using namespace tessera;
 using namespace tessera::testing;
@@ -13,7 +13,7 @@ using sc_core::SC_ZERO_TIME;
 
 namespace {
 
-/// What brings a triangle, and its parts from both branches, one branch as a whole after the other.
+/// Sends a triangle, and its parts from both branches, one whole branch after the other.
 struct JoinBench {
     datapath::Registers registers;
     Design design;
@@ -51,7 +51,7 @@ struct JoinBench {
     void bring_tests(const TakenTriangle& taken) { bring_parts(tests, taken, edge_parts); }
 };
 
-/// A base triangle, or one of which all is known.
+/// A base triangle, or one with all values known.
 TakenTriangle taken(Tag tag, bool base) {
     TakenTriangle triangle;
     triangle.tag = triangle.origin.pass = tag;
@@ -84,7 +84,7 @@ TEST_CASE("pass or tessellate: a part of a triangle that did not come, or that c
     CHECK_THAT(error_of([&] { bench.bring_tests(other); }), Contains("did not come itself"));
     CHECK_THAT(error_of([&] { bench.bring_geometry(other); }), Contains("did not come itself"));
     CHECK_THAT(error_of([&] { bench.bring_geometry(triangle); }), Contains("came twice"));
-    bench.bring(other);  // of which the other parts are still to come
+    bench.bring(other);  // its other parts are still to arrive
     const auto edge_from_transform = [&] { bench.bring_parts(bench.transform, other, 0100); };
     const auto edge_from_tests = [&] { bench.bring_parts(bench.tests, other, 0100); };
     edge_from_transform();
@@ -123,7 +123,7 @@ TEST_CASE("pass or tessellate: a finished triangle waits for its normals in scre
             bench.transform.out->b_transport(edge, delay);
         }
         bench.bring_tests(triangle);
-        CHECK_FALSE(bench.unit.joined());  // its normal is still to come, and is what makes it known
+        CHECK_FALSE(bench.unit.joined());  // its normal is still missing, and would complete it
         ScreenPoint normal;
         normal.tag = {triangle.tag, static_cast<std::uint8_t>(first_normal_part + unknown), {}};
         sc_core::sc_time delay = SC_ZERO_TIME;

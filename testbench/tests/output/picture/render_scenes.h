@@ -13,7 +13,7 @@
 
 namespace tessera {
 
-// Meshes and cameras of which one knows where everything is in the picture.
+// Meshes and cameras for which the position of everything in the picture is known.
 
 constexpr double pi = 3.14159265358979323846;
 
@@ -22,7 +22,7 @@ inline void add_quad(RenderMesh& mesh, std::uint32_t a, std::uint32_t b, std::ui
     mesh.triangles.push_back({{a, c, d}, 1, DecidingTest::normal});
 }
 
-/// Of radius 1 around the origin it is given.
+/// A sphere of radius 1 around `origin`.
 inline RenderMesh make_sphere(const glm::dvec3& origin, std::uint32_t columns = 192) {
     const std::uint32_t rows = columns / 2;
     RenderMesh mesh;
@@ -87,8 +87,8 @@ inline int brightness(const Image& image, int x, int y) {
     return colour[0] + colour[1] + colour[2];
 }
 
-/// Quads side by side, each from x = 2 i - n to x = 2 i + 2 - n and from y = -1 to 1, facing +z: quad i of
-/// two triangles.
+/// Quads side by side, each from x = 2 i - n to x = 2 i + 2 - n and from y = -1 to 1, facing +z; quad i has two
+/// triangles.
 inline RenderMesh make_row(std::uint32_t quads) {
     RenderMesh mesh;
     for (std::uint32_t i = 0; i <= quads; ++i)

@@ -56,7 +56,7 @@ TEST_CASE("A picture is the same on any number of threads") {
 }
 
 TEST_CASE("A sphere's silhouette is a disc of the right radius and centre") {
-    const glm::dvec3 origin(1e5, -3e5, 2e5);  // far from 0: single precision alone would not do
+    const glm::dvec3 origin(1e5, -3e5, 2e5);  // far from 0, where single precision would not suffice
     const RenderMesh mesh = make_sphere(origin);
     View view = look_down(4, 200, 160, 200);
     view.eye += origin;
@@ -73,7 +73,7 @@ TEST_CASE("A sphere's silhouette is a disc of the right radius and centre") {
     const double radius = view.focal / std::sqrt(4.0 * 4.0 - 1);
     CHECK(sum_x / count == Approx(90).margin(0.1));
     CHECK(sum_y / count == Approx(85).margin(0.1));
-    // Pixels touched at all count: the disc appears half a pixel larger.
+    // Partly covered pixels count: the disc appears half a pixel larger.
     CHECK(std::sqrt(count / pi) == Approx(radius + 0.5).margin(0.35));
     const Colour inside = image.at(90 + static_cast<int>(radius) - 2, 85);
     CHECK(inside != Style{}.background);
@@ -117,7 +117,7 @@ TEST_CASE("A patch is lit like each of its points, and not by a lamp from which 
     }
     CHECK(most_apart < 1e-12);
 
-    // In a closed sphere only the fill light is left, which comes from the right and throws no shadow.
+    // Inside a closed sphere only the fill light remains, which comes from the right and casts no shadow.
     const RenderMesh ball = make_sphere({});
     const RayScene closed(ball);
     const Illumination cave(view, Style{}, closed);
@@ -149,13 +149,13 @@ TEST_CASE("A ball over a sheet throws a shadow") {
     CHECK(brightness(image, shadow, 80) + 100 < brightness(image, shadow, 130));
     CHECK(std::abs(brightness(image, 35, 80) - brightness(image, 35, 130)) < 30);
 
-    // Tiles elsewhere on the mesh: the shadow's edge does not show where they begin. A pixel may be lit as
-    // the nearest of its tile's probes, of which there is one in each square of 2 x 2: a neighbour. So its
-    // brightness changes by no more than it does among its neighbours.
+    // With other tile positions the shadow's edge must not show the tiles. A pixel may take its light from the nearest
+    // of its tile's probes, of which there is one in each square of 2 x 2: a neighbour. So its brightness changes by no
+    // more than the differences among its neighbours.
     View moved = look_down(4, 160, 160, 240);
     moved.centre += glm::dvec2(4, 4);
     const Image other = render(mesh, moved, style);
-    constexpr int rounding = 3;  // a level of each channel
+    constexpr int rounding = 3;  // one level of each channel
     int changed = 0, beyond = 0;
     for (int y = 1; y + 5 < image.height; ++y)
         for (int x = 1; x + 5 < image.width; ++x) {
@@ -171,7 +171,7 @@ TEST_CASE("A ball over a sheet throws a shadow") {
             changed += change > 0 ? 1 : 0;
             beyond += change > brightest - darkest + rounding ? 1 : 0;
         }
-    CHECK(changed > 0);  // the tiles do differ
+    CHECK(changed > 0);  // the tiles do change the picture
     CHECK(beyond == 0);
 }
 
@@ -214,7 +214,7 @@ TEST_CASE("Nothing to see gives the background") {
     const View view = look_down(4, 50, 40, 50);
     CHECK(is_background(render(RenderMesh{}, view, Style{})));
     View away = view;
-    away.eye.z = -4;  // the mesh lies behind
+    away.eye.z = -4;  // the mesh is behind the eye
     CHECK(is_background(render(make_sphere({0, 0, 0}, 24), away, Style{})));
     View near = view;
     near.near_plane = 6;
@@ -294,7 +294,7 @@ TEST_CASE("framed() shows all of the mesh, as large as the margin allows") {
     CHECK(corner.y / corner.z == Approx(150 - 80));
     CHECK(proportions(view, mesh) == Approx(1));
     const View beyond = framed(look_down(0.5, 640, 480, 1000), mesh, 320, 240, 0);
-    CHECK(beyond.focal == Approx(500));  // fills the run's own viewport: nothing to enlarge
+    CHECK(beyond.focal == Approx(500));  // it already fills the run's own viewport and is not enlarged
     CHECK(framed(view, RenderMesh{}, 320, 240, 0).focal == Approx(50));
 }
 

@@ -22,7 +22,7 @@ struct ReadBack {
     std::string attributes;
 };
 
-/// With OpenEXR's own reader, the file's first row first.
+/// Reads with OpenEXR's own reader, the file's first row first.
 ReadBack read_back(const std::string& file) {
     Imf::StdISStream stream;
     stream.str(file);
@@ -62,7 +62,7 @@ Picture sample_picture() {
         .front();
 }
 
-/// The largest difference of any channel, in codes of the PNG.
+/// The largest difference in any channel, in codes of the PNG.
 int largest_difference(const LinearImage& linear, const Image& image) {
     int largest = 0;
     for (int y = 0; y < image.height; ++y)
@@ -104,7 +104,7 @@ TEST_CASE("render: an EXR file has the PNG's pixels in linear light") {
 TEST_CASE("render: the first row of an EXR file is the upper one") {
     LinearImage image{3, 2, {}};
     for (int i = 0; i < 18; ++i)
-        image.values.push_back(static_cast<float>(i) / 4);  // beyond 1, too
+        image.values.push_back(static_cast<float>(i) / 4);  // also beyond 1
     for (const ExrSamples samples : {ExrSamples::half, ExrSamples::single}) {
         const ReadBack file = read_back(encode_exr(image, samples));
         CHECK(file.image.width == 3);

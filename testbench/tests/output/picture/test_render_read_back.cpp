@@ -19,7 +19,7 @@ MachineSetup some_setup(const glm::dvec3& centre, double scale) {
     return setup;
 }
 
-/// A bumpy grid in the machine's numbers, with all that can tell two corners or two triangles apart.
+/// A bumpy grid in the machine's number formats, in which all corners and triangles are distinguishable.
 EmittedMesh some_mesh() {
     EmittedMesh mesh;
     const auto at = [](int x, int y) {

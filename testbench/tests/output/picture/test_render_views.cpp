@@ -16,7 +16,7 @@ using namespace tessera;
 
 namespace {
 
-/// The camera's own picture, pixel by pixel: no framing, and as many pixels as the camera has.
+/// The camera's own picture: no framing, and the camera's size in pixels.
 PictureOptions as_seen(const View& camera) {
     PictureOptions options;
     options.width = camera.width;
@@ -29,7 +29,7 @@ Picture one_view(const RenderMesh& mesh, const View& camera, PictureView view, c
     return render_views(mesh, camera, {view}, options).front();
 }
 
-/// Which of these paints a lit pixel most likely has: light changes its brightness, and hardly its hue.
+/// The paint that a lit pixel most likely has: light changes the brightness, but hardly the hue.
 template <typename Paints>
 std::size_t nearest_hue(const Colour& pixel, const Paints& paints) {
     const auto hue = [](const Colour& colour) {
@@ -56,7 +56,7 @@ bool has_colour(const Image& image, const Colour& colour, int from_row) {
     return false;
 }
 
-/// Five quads, each stopped by something else.
+/// Five quads, each stopped by a different test.
 RenderMesh stopped_row() {
     RenderMesh mesh = make_row(5);
     const std::array<std::uint8_t, 5> bits{0, datapath::view_bit, datapath::tex_coord_bit, datapath::generation_bit,
@@ -82,7 +82,7 @@ TEST_CASE("render: a mesh is where its projection says, and nowhere else") {
     }
     for (int y = 0; y < image.height; ++y)
         for (int x = 0; x < image.width; ++x) {
-            double depth = 1e9;  // how far inside the triangle, pixels
+            double depth = 1e9;  // distance from the triangle's border, in pixels
             for (std::size_t k = 0; k < 3; ++k) {
                 const glm::dvec2 edge = glm::normalize(corners[(k + 1) % 3] - corners[k]);
                 const glm::dvec2 to = glm::dvec2(x + 0.5, y + 0.5) - corners[k];
@@ -111,7 +111,7 @@ TEST_CASE("render: a plane that faces the light is brighter than one that turns 
 
 TEST_CASE("render: lines run where edges are projected and nowhere else") {
     const RenderMesh mesh = make_row(4);
-    const View view = look_down(4, 400, 160, 160);  // 80 pixels a quad, from x = 40 on; rows 40 to 120
+    const View view = look_down(4, 400, 160, 160);  // 80 pixels per quad, from x = 40; rows 40 to 120
     const Image plain = one_view(mesh, view, PictureView::shaded, as_seen(view)).image;
     PictureOptions options = as_seen(view);
     options.line_width = 2;
@@ -134,7 +134,7 @@ TEST_CASE("render: lines run where edges are projected and nowhere else") {
 }
 
 TEST_CASE("render: triangles smaller than lines become a tone without pattern") {
-    // 2.3 pixels a quad: lines drawn in full would beat against the pixels.
+    // 2.3 pixels per quad: full lines would cause moire with the pixels.
     RenderMesh mesh;
     constexpr std::uint32_t side = 80;
     for (std::uint32_t y = 0; y <= side; ++y)
@@ -160,18 +160,18 @@ TEST_CASE("render: triangles smaller than lines become a tone without pattern") 
             most = std::max(most, sum / 64);
         }
     CHECK(most - least < 0.03);
-    CHECK(most < 0.95);   // the lines do show
-    CHECK(least > 0.75);  // and blacken nothing
+    CHECK(most < 0.95);   // the lines are visible
+    CHECK(least > 0.75);  // and nothing is black
 }
 
 TEST_CASE("render: each view has its colours, where they belong") {
     const RenderMesh mesh = stopped_row();
-    const View view = look_down(8, 500, 140, 320);  // 80 pixels a quad from x = 50 on, rows 30 to 110
+    const View view = look_down(8, 500, 140, 320);  // 80 pixels per quad from x = 50, rows 30 to 110
     const auto at_quad = [&](const Image& image, int quad) {
         return image.at(50 + 80 * quad + 20, 70 + 12);  // clear of lines
     };
     PictureOptions options = as_seen(view);
-    options.height = 0;  // the legend gets a room of its own
+    options.height = 0;  // the legend is added to the height
     SECTION("stopped") {
         const Image image = one_view(mesh, view, PictureView::stopped, options).image;
         std::array<Colour, stops> paints;
@@ -193,7 +193,7 @@ TEST_CASE("render: each view has its colours, where they belong") {
         for (int x = 55; x < 445; x += 7)
             for (int y = 35; y < 105; y += 7)
                 seen.insert(nearest_hue(image.at(x, y), paints));
-        CHECK(seen == std::set<std::size_t>{0, 1});  // add_quad makes a base triangle and one of the Normal Test
+        CHECK(seen == std::set<std::size_t>{0, 1});  // add_quad makes a base triangle and one due to the Normal Test
         for (const Colour& paint : paints)
             CHECK(has_colour(image, paint, 120));
     }
@@ -211,7 +211,7 @@ TEST_CASE("render: each view has its colours, where they belong") {
         }
         CHECK(has_colour(image, generation_colour(12), 120));
         CHECK_FALSE(has_colour(one_view(mesh, view, PictureView::generation, options).image, generation_colour(12),
-                               120));  // what the mesh lacks the legend lacks
+                               120));  // the legend omits what the mesh lacks
     }
     SECTION("shaded and wireframe have none") {
         for (const PictureView plain : {PictureView::shaded, PictureView::wireframe}) {
@@ -219,14 +219,14 @@ TEST_CASE("render: each view has its colours, where they belong") {
             const std::array<Colour, 3> paints{Style{}.surface, stop_colour(Stop::view), stop_colour(Stop::generation)};
             for (int quad = 0; quad < 5; ++quad)
                 CHECK(nearest_hue(at_quad(image, quad), paints) == 0);
-            CHECK(image.height == 150);  // 0.3 of the width, and no room for a legend
+            CHECK(image.height == 150);  // 0.3 of the width, with no space for a legend
         }
     }
 }
 
 TEST_CASE("render: errors of triangles and of vertices get the ramp's colours") {
     RenderMesh mesh = make_row(3);
-    const View view = look_down(8, 400, 160, 320);  // 80 pixels a quad from x = 80 on
+    const View view = look_down(8, 400, 160, 320);  // 80 pixels per quad from x = 80
     PictureOptions options = as_seen(view);
     options.errors = {0.5, 0, 0.1};
     std::array<Colour, 3> paints{error_colour(0), error_colour(0.5), error_colour(1)};
@@ -277,7 +277,7 @@ TEST_CASE("render: a legend names what its colours stand for") {
     mesh.triangles[0].generation = 12;
     CHECK(legend_of(PictureView::generation).first == "10 triangles, by generation");
     CHECK(legend_of(PictureView::generation).second.back() == "12");
-    mesh.triangles[0].generation = 40;  // its colour is that of 12
+    mesh.triangles[0].generation = 40;  // it has the colour of 12
     CHECK(legend_of(PictureView::generation).second.size() == 13);
     CHECK(legend_of(PictureView::generation).second.back() == "12+");
 
@@ -310,7 +310,7 @@ TEST_CASE("render: a zoom enlarges around the point it is given") {
     const RenderMesh mesh = make_square();  // from 20 to 100 in both axes
     const View view = look_down(4, 120, 120, 160);
     PictureOptions options = as_seen(view);
-    options.zoom = {100 / 120.0, 20 / 120.0, 6};  // the upper right corner comes to the middle
+    options.zoom = {100 / 120.0, 20 / 120.0, 6};  // the upper right corner moves to the middle
     const Image image = one_view(mesh, view, PictureView::shaded, options).image;
     CHECK(image.at(57, 63) != Style{}.background);
     CHECK(image.at(3, 117) != Style{}.background);
@@ -448,7 +448,7 @@ TEST_CASE("render: small and odd sizes and empty meshes do no harm") {
 
 TEST_CASE("render: a mesh is seen from very far away as from near") {
     const RenderMesh mesh = make_sphere({0, 0, 0}, 96);
-    // Through single precision alone, the whole mesh would be a few steps deep.
+    // In single precision the whole mesh would be only a few steps deep.
     const View near = look_down(1e3, 100, 100, 40 * 1e3);
     const View far = look_down(1e7, 100, 100, 40 * 1e7);
     const Image a = render(mesh, near, Style{});

@@ -12,7 +12,7 @@
 #include "testbench/tests/support/source_folder.h"
 #include "testbench/tests/support/timed_checks.h"
 
-// Hardware of a design: some units by hand, and what each parameter changes.
+// The hardware of a design: some units by hand, and the effect of each parameter.
 
 using namespace tessera;
 using namespace tessera::testing;
@@ -30,7 +30,7 @@ std::map<std::string, UnitArea> area(const std::string& settings = "", std::size
     return by_name;
 }
 
-/// "12 x" in the row of a function in the datapath's README.
+/// The number N of "N x" in a function's row in the datapath's README.
 unsigned multiplications(const std::string& function) {
     std::ifstream readme(source_folder() / "modules/datapath/README.md");
     for (std::string line; std::getline(readme, line);) {
@@ -57,7 +57,7 @@ TEST_CASE("area: the datapath's README says how often each function multiplies")
     CHECK(multiplications("highlight_test") == M::highlight_test);
 }
 
-// A screen point has 48 bits more, N' or N's, 16 of its code, one of a vertex's handedness, and two of a longer tag.
+// A screen point has 48 more bits for N' or N's, 16 for its code, 1 for a vertex's handedness, 2 for a longer tag.
 TEST_CASE("area: a machine of families") {
     auto units = area("hardware.design=modern");
     CHECK(units["displace_vertex"].multipliers == 4 + 27);
@@ -71,7 +71,7 @@ TEST_CASE("area: a machine of families") {
     auto one_lane = area("hardware.design=modern hardware.edge_lanes=1");
     CHECK(units["view_test"].register_bits == 3 * one_lane["view_test"].register_bits);
     CHECK(units["tex_coord_test"].register_bits == 3 * one_lane["tex_coord_test"].register_bits);
-    // A place of Pass or Tessellate: a family and nine edges of some 300 bits.
+    // An entry of Pass or Tessellate: a family and nine edges of some 300 bits.
     const std::uint64_t place =
         units["pass_or_tessellate"].register_bits -
         area("hardware.design=modern timing.pass_or_tessellate_buffer=95")["pass_or_tessellate"].register_bits;
@@ -79,10 +79,10 @@ TEST_CASE("area: a machine of families") {
     CHECK(place < 6 * 540 + 9 * 350);
 }
 
-// A base point is 6 + 4 + 96 + 48 + 50 = 204 bits, a displaced one 96 more, a screen point 81 more than that.
+// A base point has 6 + 4 + 96 + 48 + 50 = 204 bits, a displaced one 96 more, a screen point 81 more than that.
 TEST_CASE("area: the default design, by hand") {
     auto units = area();
-    // buffer of one; latency 6 and the map's 1; a code of 16 bits
+    // buffer of one; latency 6 and 1 of the map; a code of 16 bits
     CHECK(units["displace_vertex"].register_bits == 204 + 7 * (300 + 16));
     CHECK(units["displace_vertex"].multipliers == 12 + 4);
     CHECK(units["transform"].register_bits == 300 + 20 * 381);
@@ -125,7 +125,7 @@ TEST_CASE("area: what each parameter changes") {
     CHECK(32 * (first["sequence_tests"].register_bits - one_edge_less) < first["sequence_tests"].register_bits);
     CHECK(first["sequence_tests"].register_bits - one_edge_less > 600);
     CHECK(paper["total"].multipliers == first["total"].multipliers);
-    // A miss takes 40 cycles of latency and 4 of the channel longer, and so many more register stages of one width.
+    // A miss takes 40 cycles of latency and 4 of the channel longer, and needs as many more register stages.
     auto cached = area("timing.normal_map_cache_bytes=6000");
     CHECK(cached["normal_map"].memory_bits == 1000 * 48);
     const std::uint64_t more = cached["normal_test"].register_bits - paper["normal_test"].register_bits;
@@ -133,7 +133,7 @@ TEST_CASE("area: what each parameter changes") {
     CHECK(more / 44 > 400);
 }
 
-// 264 x 264 texels: 17 bits an address. Three codes a request.
+// 264 x 264 texels: 17 address bits. Three codes per request.
 TEST_CASE("area: the second side of a displacement map has ports and addresses, and the bits are there once") {
     const std::string curvature = "hardware.height_test=curvature timing.displacement_map_buffer=2 ";
     auto units = area(curvature + "timing.displacement_map_ports=2 timing.displacement_map_banks=4");

@@ -6,7 +6,7 @@
 using namespace tessera;
 using Catch::Contains;
 
-// What `tessera compare` leaves to be read: every column has its unit.
+// The reports of `tessera compare`: every column has its unit.
 
 TEST_CASE("error.txt: every figure below its heading, in both units") {
     MeshError error;

@@ -27,7 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Files may not grow beyond this while it lives: a full disk without needing one.
+/// Limits the size of files during its lifetime, to simulate a full disk.
 class FileSizeLimit {
   public:
     explicit FileSizeLimit(rlim_t bytes) {
@@ -204,7 +204,7 @@ TEST_CASE("an OBJ file read back holds the mesh, grouped by generation and test"
         }
         expected.insert({std::string(names[t.split_by]) + "_g" + std::to_string(generation(t)), numbers});
     }
-    // tinyobjloader's numbers are not exact: it vouches for the structure, strtod for the digits
+    // tinyobjloader's numbers are not exact: it checks the structure, strtod the digits
     std::vector<std::array<double, 3>> v, vt, vn;
     std::string group;
     std::size_t groups = 0, materials_used = 0;
@@ -347,7 +347,7 @@ TEST_CASE("an atomic file appears complete or not at all") {
         write_file(path, "new");
         for (const std::string& name : others)
             CHECK(fs::exists(folder / name / "new-mesh.ply"));
-        CHECK(folder.names().size() == others.size() + 2);  // what is no folder, and the new file
+        CHECK(folder.names().size() == others.size() + 2);  // the file that is no folder, and the new file
     }
     SECTION("two at once for one name do not meet") {
         AtomicFile one(path), two(path);
@@ -404,7 +404,7 @@ TEST_CASE("a place that cannot be written is bad input") {
     require_message(folder.path(), "it is a folder, not a file");
     require_message("/dev/full", "it is a device, not a file");
     CHECK(message_of(folder / std::string(300, 'n')).find("File name too long") != std::string::npos);
-    if (::geteuid() != 0) {  // the superuser may write anywhere
+    if (::geteuid() != 0) {  // root may write anywhere
         fs::permissions(folder.path(), fs::perms::owner_read | fs::perms::owner_exec);
         require_message(folder / "mesh.ply", "Permission denied");
         fs::permissions(folder.path(), fs::perms::owner_all);

@@ -10,7 +10,7 @@
 #include "modules/datapath/widths.h"
 #include "testbench/tests/support/hand_made_run.h"
 
-// statistics.json and .csv: every figure of small runs by hand, and each counter of the machine in its own figure.
+// statistics.json and .csv: every figure of small runs derived by hand, and each counter of the machine in its figure.
 
 using namespace tessera;
 using namespace tessera::testing;
@@ -18,7 +18,7 @@ using Catch::Contains;
 
 namespace {
 
-/// "group.name" to its value, numbers as doubles.
+/// Maps "group.name" to its value, with numbers as doubles.
 struct Figures {
     std::map<std::string, double> numbers;
     std::map<std::string, std::string> words;
@@ -47,7 +47,7 @@ struct Figures {
             CHECK(numbers.at(group + "." + name) == Approx(value));
         }
     }
-    /// Likewise, and the group has no other figure.
+    /// The same, and requires that the group has no other figure.
     void require_all(const std::string& group, const std::map<std::string, double>& wanted) const {
         require(group, wanted);
         for (const auto& [name, value] : numbers) {
@@ -72,8 +72,8 @@ EmittedTriangle::Corner corner(std::uint32_t u, std::uint32_t v, std::int32_t z,
 
 }  // namespace
 
-// Two base triangles of a plane, each split into four: a mesh of 3 x 3 vertices. 10 passes of three edges, 6 of them
-// split, each of two base triangles' six and of eight children none; the children lack all three normals.
+// Two base triangles of a plane, each split into four: a mesh of 3 x 3 vertices. 10 passes of three edges; all six
+// edges of the two base triangles split, those of the eight children do not. The children lack all three normals.
 TEST_CASE("statistics: two triangles split once, by hand") {
     Job job = full_split_job(1, 1);
     job.map.width = job.map.height = 8;
@@ -82,7 +82,7 @@ TEST_CASE("statistics: two triangles split once, by hand") {
     CHECK(f.words.at("run.mode") == "timed");
     f.require_all(
         "run", {{"edges_tested", 30}, {"edges_split", 6}, {"triangles_finished", 8}, {"edges_per_triangle", 30.0 / 8}});
-    // 16 edges of the mesh and the 5 of the base mesh, all split
+    // 16 edges of the mesh and 5 of the base mesh, which all split
     f.require_all("useful_work", {{"vertices", 9},
                                   {"vertices_made", 6 + 30},
                                   {"vertices_thrown_away", 30 - 6},
@@ -102,9 +102,9 @@ TEST_CASE("statistics: two triangles split once, by hand") {
                   {{"made_into_2", 0}, {"made_into_3", 0}, {"made_into_4", 2}, {"passed_unchanged", 0}});
     f.require("triangle_queue", {{"taken", 8}});
     f.require_all("lighting", {{"triangles", 8}});
-    // a byte or two a code; three components of 16 bits; 9 x 9 sums
+    // one or two bytes per code; three components of 16 bits; 9 x 9 sums
     const std::uint64_t sum = simulation.setup.registers.height_table.entry_bytes;
-    // one a cycle of each table; 16 + 24 + 51 + 12
+    // one port per table; 16 + 24 + 51 + 12
     f.require("area", {{"transform_multipliers", 24},
                        {"transform_register_bits", 300 + 20 * 381},
                        {"total_multipliers", 103},
@@ -122,7 +122,7 @@ TEST_CASE("statistics: two triangles split once, by hand") {
                                           {"reads_per_edge", 12}});
     f.require_all("mesh", {{"triangles", 8}, {"generation_0", 0}, {"generation_1", 8}});
 
-    // the widths have tests of their own
+    // other tests check the widths
     const datapath::Widths widths = datapath::stream_widths(simulation.setup.registers.formats);
     const auto bytes = [](std::uint64_t bits) { return static_cast<double>((bits + 7) / 8); };
     const double tables = 8 * 8 * 2 + 8 * 8 * 6 + 81.0 * static_cast<double>(sum);
@@ -194,10 +194,10 @@ TEST_CASE("statistics: what every test stopped stands in the emitted triangle, t
                                              {datapath::generation_bit, 1}});
 }
 
-// The schedule of modules/test_one_triangle.cpp. First round: parts leave Get Triangle in cycles 1 to 6; vertices
-// enter Displace Vertex in 2, 3, 4 (+ map 1), Transform in 9, 10, 11, edges in 12, 13, 14; joined in 47.
-// Second round: taken in 50, three normals, which read nothing, in Displace Vertex from 52, in Transform from
-// 58; joined in 80, lit in 81, out in 85.
+// The schedule of modules/test_one_triangle.cpp. First round: parts leave Get Triangle in cycles 1 to 6; vertices enter
+// Displace Vertex in 2, 3, 4 (+ 1 for the map) and Transform in 9, 10, 11, edges in 12, 13, 14; joined in 47. Second
+// round: taken in 50; three normals, which read nothing, are in Displace Vertex from 52 and in Transform from 58;
+// joined in 80, lit in 81, out in 85.
 TEST_CASE("statistics: one triangle's cycles, unit by unit, by hand") {
     TimedRun simulation(one_triangle());
     const Figures f = figures_of(simulation);
@@ -217,21 +217,21 @@ TEST_CASE("statistics: one triangle's cycles, unit by unit, by hand") {
         double items, busy, waiting, blocked, occupied, item_cycles, most;
     };
     for (const Books& b : {
-             // parts in 1 to 6 and in 51 to 53, a triangle until its last one is taken
+             // parts in 1 to 6 and in 51 to 53; a triangle stays until its last part is taken
              Books{"get_triangle", 2, 6 + 3, 0, 0, 9, 6 + 3, 1},
-             // each part a cycle: six and three in a row
+             // one cycle per part: six and three in sequence
              Books{"calculate_new_p", 9, 6 + 3, 0, 0, 9, 9, 1},
-             // six parts of 1 + 6, the first alone with its read for a cycle: 2 to 13; three of 6: 52 to 59
+             // six parts of 1 + 6, the first one cycle alone with its read: 2 to 13; three of 6: 52 to 59
              Books{"displace_vertex", 9, 11 + 8, 1, 0, 9, 6 * 7 + 3 * 6, 6},
              Books{"transform", 9, 25 + 22, 0, 0, 9, 9 * 20, 6},
-             // edges 0 and 1 pass on the third vertex' heels; edge 2 is held back from 6 to 31
+             // edges 0 and 1 follow the third vertex directly; edge 2 is held back from 6 to 31
              Books{"tessellation_tests_0.tex_coord_test", 3, 3, 0, 0, 3, 3, 1},
              Books{"tessellation_tests_0.view_test", 3, 3, 0, 0, 3, 3, 1},
              Books{"pass_or_tessellate", 2, 1 + 1, 0, 0, 2, 47 - 29 + 1 + 80 - 78 + 1, 1},
              Books{"tessellation", 1, 1, 0, 0, 1, 1, 1},
              Books{"lighting", 1, 4, 0, 0, 1, 4, 1},
              Books{"displacement_map", 6, 6, 0, 0, 6, 6, 1},
-             // 24 cycles for edges 0 and 1 from 5 on, 12 for edge 2 from 32 on
+             // 24 cycles for edges 0 and 1 from 5, 12 for edge 2 from 32
              Books{"summed_height_table", 9, 36, 0, 0, 36, 0, 0},
              Books{"off_chip_memory", 0, 0, 0, 0, 0, 0, 0},
          }) {
@@ -252,13 +252,13 @@ TEST_CASE("statistics: one triangle's cycles, unit by unit, by hand") {
     f.require("timing.tessellation_tests_0.calculate_new_u",
               {{"blocked", 31 - 6}, {"blocked_by_tessellation_tests_0.view_test", 31 - 6}});
     f.require("timing.displace_vertex", {{"waiting_for_displacement_map", 1}});
-    // queues and wires have a rate and a level: one triangle for a cycle, and three edges of which two wait
-    // for the third
+    // queues and joins have a rate and a level: one triangle for one cycle, and three edges, two of which wait for the
+    // third
     f.require("timing.tessellation_tests_0.collect_tests", {{"items", 3}, {"items_out", 3}, {"throughput", 3.0 / 86}});
     for (const char* const name : {"triangle_queue", "tessellation_tests_0.collect_tests"})
         for (const char* const figure : {"busy", "starved", "waiting_for_memory", "blocked", "utilisation"})
             CHECK(f.numbers.count(std::string("timing.") + name + "." + figure) == 0);
-    // it is on its way out in the cycle in which it comes
+    // it leaves in the cycle in which it arrives
     f.require("timing.triangle_queue", {{"items", 1},
                                         {"items_out", 1},
                                         {"throughput", 1.0 / 86},
@@ -278,7 +278,7 @@ TEST_CASE("statistics: what is spilled comes back, in whole records") {
     TimedRun simulation(setup_of(job));
     const double spilled = static_cast<double>(simulation.pipeline.triangle_queue.spilled());
     REQUIRE(spilled > 0);
-    // 1572 bits a triangle
+    // 1572 bits per triangle
     figures_of(simulation)
         .require("timing.triangle_queue", {{"capacity", 2},
                                            {"on_chip_high_water_mark", 2},

@@ -6,8 +6,8 @@
 
 #include "testbench/tests/support/timed_checks.h"
 
-// timing.txt on a machine that has not run: its units' books are written by hand, over 1000 cycles, so that each column
-// holds a figure of its own.
+// timing.txt of a machine that has not run: its units' activities are set by hand, over 1000 cycles, so that each
+// column holds a different figure.
 
 using namespace tessera;
 using namespace tessera::testing;
@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::uint64_t cycles = 1000;
 
-/// A machine whose units have done nothing yet.
+/// A machine whose units have done nothing.
 struct Machine {
     MachineSetup setup;
     Simulation simulation{setup, 1000};
@@ -29,8 +29,8 @@ struct Machine {
     explicit Machine(const Job& job = timed_job()) : setup(setup_of(job)) {}
 };
 
-/// `count` items one after another, from cycle `first` on, of one cycle each; with one interval a cycle the
-/// unit is so many cycles occupied.
+/// `count` items one after another, from cycle `first`, each for one cycle; with an interval of one the unit is
+/// occupied for `count` cycles.
 void work_on(Unit& unit, std::uint64_t count, std::uint64_t first = 0) {
     for (std::uint64_t k = 0; k < count; ++k) {
         unit.activity().item_in(first + k);
@@ -51,7 +51,7 @@ TEST_CASE("timing tables: each column of a unit") {
     Activity& a = m.tests.normal_test.activity();
     a.item_in(0);
     a.item_in(0);
-    a.item_in(10);  // three for 100 cycles
+    a.item_in(10);  // three items for 100 cycles
     a.item_out(110);
     a.item_out(110);
     a.item_out(110);
@@ -64,12 +64,12 @@ TEST_CASE("timing tables: each column of a unit") {
     const std::string text = timing_tables(m.pipeline, cycles);
     CHECK_THAT(text, StartsWith("unit                                         items     busy  memory  blocked  "
                                 "starved  utilisation  items/kcyc   occup.  most  cause\n"));
-    // (2 * 10 + 3 * 100) / 1000 items in it on average
+    // on average (2 * 10 + 3 * 100) / 1000 items are in it
     CHECK(line_of(text, "tessellation_tests_0.normal_test") ==
           "tessellation_tests_0.normal_test                 3     7.00    4.00    20.00    69.00         0.30"
           "        3.00    0.320     3  blocked by tessellation_tests_0.collect_tests, waits for normal_map, "
           "starved by transform");
-    // who did nothing starved, and nobody is named
+    // an idle unit counts as starved, with no unit named
     m.pipeline.lighting.activity().finish(cycles);
     CHECK(line_of(timing_tables(m.pipeline, cycles), "lighting") ==
           "lighting                                         0     0.00    0.00     0.00   100.00         0.00"
@@ -89,7 +89,7 @@ TEST_CASE("timing tables: of several who block a unit the one that did so longes
                EndsWith("  blocked by tessellation_tests_0.view_test"));
 }
 
-// Otherwise the queue would be "blocked" whenever something waits in it, and the joins "starved" for ever.
+// Otherwise the queue would be "blocked" whenever something waits in it, and the joins "starved" permanently.
 TEST_CASE("timing tables: queues and joins have a rate and a level, and no states") {
     Machine m;
     Activity& queue = m.pipeline.triangle_queue.activity();
@@ -128,7 +128,7 @@ TEST_CASE("bottleneck: the next limit names all within a per cent of it, in the 
     Machine m;
     work_on(m.pipeline.transform, 1000);
     work_on(m.tests.view_test, 400);
-    work_on(m.tests.normal_test, 396);  // a per cent less
+    work_on(m.tests.normal_test, 396);  // one percent less
     work_on(m.pipeline.calculate_new_p, 398);
     work_on(m.pipeline.displace_vertex, 395);
     const Bottleneck found = find_bottleneck(m.pipeline, cycles);
@@ -145,8 +145,8 @@ TEST_CASE("bottleneck: the next limit names all within a per cent of it, in the 
           "tessellation_tests_0.view_test, which tie at 40.0 %");
 }
 
-// The bound is on the run's length, so it rests on the work that remains, not on how much more the first
-// limit has: what is 90 % taken and gone leaves half of the cycles at least.
+// The bound is on the run's length, so it depends on the work that remains, not on how far the first limit is ahead:
+// without a unit at 90 % at least half of the cycles remain.
 TEST_CASE("bottleneck: the bound is what remains to be done, and who waits longest is named") {
     Machine m;
     work_on(m.pipeline.lighting, 900);
@@ -191,12 +191,12 @@ TEST_CASE("bottleneck: below 85 % latency binds, and what would help is said") {
     work_on(m.pipeline.calculate_new_p, 845);
     Activity& transform = m.pipeline.transform.activity();
     transform.item_in(0);
-    transform.item_out(35);  // longer than any other stage
+    transform.item_out(35);  // longer than in any other stage
     transform.item_in(100);
     transform.item_out(120);
     Activity& get = m.pipeline.get_triangle.activity();
     get.item_in(0);
-    get.item_out(900);  // waiting for others
+    get.item_out(900);  // waiting for other units
     SECTION("more triangles, where none waits") {
         get.set(0, State::blocked, &m.pipeline.calculate_new_p);
         get.set(200, State::starved);
@@ -250,8 +250,8 @@ TEST_CASE("bottleneck: a machine that did nothing has none") {
     CHECK(find_bottleneck(m.pipeline, cycles).bound() == 0);
 }
 
-// 12 entries an edge through one port: 36 of the 86 cycles (modules/test_one_triangle.cpp); the bound is the nine parts
-// that four units pass on, a cycle each.
+// 12 entries per edge through one port: 36 of the 86 cycles (modules/test_one_triangle.cpp). The bound is the nine
+// parts that four units pass on, one per cycle.
 TEST_CASE("timing.txt of one triangle: latency binds") {
     Job job = timed_job();
     job.mesh.columns = job.mesh.rows = 1;
@@ -268,7 +268,7 @@ TEST_CASE("timing.txt of one triangle: latency binds") {
     CHECK_THAT(text, EndsWith("(an item stays 20.0 cycles in transform)\n"));
 }
 
-// The second machine has no base triangle.
+// The second machine has no base triangles.
 TEST_CASE("timing.txt of two machines: a table of each, and the bottleneck of the one that was last to finish") {
     Job job = timed_job();
     job.mesh.columns = job.mesh.rows = 1;

@@ -17,7 +17,7 @@ namespace {
 
 using nlohmann::json;
 
-/// A timeline's events of one phase, in the file's order.
+/// A timeline's events of one phase, in file order.
 std::vector<json> events_of(const std::string& text, const std::string& phase) {
     std::vector<json> events;
     const json timeline = json::parse(text);

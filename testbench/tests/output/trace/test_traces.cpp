@@ -15,9 +15,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::uint64_t period = 5;  // ns a cycle, VCD time unit 1 ns
+constexpr std::uint64_t period = 5;  // ns per cycle; the VCD's time unit is 1 ns
 
-/// A timed run of a smaller half donut into the folder "out", with these arguments besides.
+/// A timed run of a smaller half donut into the folder "out", with these additional arguments.
 Arguments small_run(const Arguments& more) {
     return Arguments{"run", "--set", "tests.generation_limit=4", "--set", "output.folder=out"} + more;
 }
@@ -34,7 +34,7 @@ std::uint64_t count(const nlohmann::json& statistics, const std::string& group, 
     return statistics.at(group).at(name).at("value").get<std::uint64_t>();
 }
 
-/// A timeline read back: what each unit did, and the flows by triangle in the order of time.
+/// A timeline read back: the activity of each unit, and the flows by triangle, in time order.
 struct Timeline {
     struct Slice {
         std::string track, state;
@@ -105,7 +105,7 @@ TEST_CASE("tracing changes nothing but its own files, and those are the same eve
 
 TEST_CASE("a window shows the cycles it names, with the values they have in the whole run") {
     const TestFolder here;
-    // Also with items held back at random, and with three Tessellation Tests units.
+    // Also with random stalls, and with three Tessellation Tests units.
     const auto design =
         GENERATE(std::vector<std::string>{},
                  std::vector<std::string>{"--set", "timing.stalls_per_mille=200", "--set", "hardware.tests_units=3"});
@@ -128,7 +128,7 @@ TEST_CASE("a window shows the cycles it names, with the values they have in the 
         for (const auto& [name, signal] : part.signals) {
             INFO(name);
             const VcdFile::Signal& its = whole[name];
-            // Operands of what came before the window are shown only while still in the unit.
+            // Operands from before the window are shown only while they are still in the unit.
             const bool operand = signal.initial != its.at(first * period);
             std::vector<std::pair<std::uint64_t, std::uint64_t>> expected;
             for (const auto& change : its.changes)
@@ -199,7 +199,7 @@ TEST_CASE("every read request can be counted in the waveforms") {
     run_small(here, Arguments{"--vcd", "--trace", "0:1000000"} + set(settings));
     const VcdFile vcd(here.path() / "out/trace.vcd");
     const nlohmann::json statistics = statistics_of(here);
-    // What the signal counted; each change is one more, or several more in one cycle.
+    // The value a signal has counted to; each change is an increment by one, or by several in one cycle.
     const auto counted = [&](const std::string& name) {
         const VcdFile::Signal& signal = vcd["tessera." + name];
         std::uint64_t value = signal.initial;
@@ -270,7 +270,7 @@ TEST_CASE("waveforms show what each test compares, and with what") {
         const bool differs = change.second > limit;
         CHECK(differs == (at(test, "out.summed_height") == 1));
         summed_height.insert(differs);
-        // The rectangle shown is the item's that was started last; its area has changed the limit if it is one's.
+        // The rectangle shown is that of the item started last; with the unit `area` its size changes the limit.
         CHECK((limit == signal(test, "threshold").at(time) || unit == "area"));
     }
     CHECK((signal("summed_height_test", "limit").changes.size() > 1) == (unit == "area"));
@@ -316,7 +316,7 @@ TEST_CASE("waveforms of off-chip memory show what a queue of four triangles spil
         addresses.insert(address);
     CHECK(addresses.size() > 4);
 
-    // A window that begins when memory has been at work begins with the request it served last.
+    // A window that starts while the memory is in use starts with the request it served last.
     const std::uint64_t middle = of_memory("address").changes[addresses.size()].first / period + 1;
     run_small(here, {"--vcd", "--trace", std::to_string(middle) + ":1000000", "--set", "hardware.queue_capacity=4"});
     const VcdFile rest(here.path() / "out/trace.vcd");
@@ -347,7 +347,7 @@ TEST_CASE("the timeline's stretches tile the window and agree with the statistic
     std::map<int, std::uint64_t> reached;
     std::map<std::pair<std::string, std::string>, std::uint64_t> spent;
     std::uint64_t counters = 0;
-    // A cycle is a microsecond: whole numbers, which viewers add without rounding.
+    // One cycle is a microsecond: whole numbers, which viewers add without rounding.
     const auto in_cycles = [](const nlohmann::json& microseconds) {
         REQUIRE(microseconds.is_number_unsigned());
         return microseconds.get<std::uint64_t>();
@@ -383,7 +383,7 @@ TEST_CASE("the timeline's stretches tile the window and agree with the statistic
                                                 {"blocked", "blocked"}})
             CHECK((spent[{name, state}]) == count(statistics, "timing." + name, figure));
     }
-    CHECK(with_states == (first > 0 ? 0 : tracks.size() - 2));  // all but queue and results, which have no states
+    CHECK(with_states == (first > 0 ? 0 : tracks.size() - 2));  // all except queue and results, which have no states
 }
 
 TEST_CASE("a triangle can be followed through the timeline") {
@@ -397,20 +397,20 @@ TEST_CASE("a triangle can be followed through the timeline") {
     const Timeline timeline(here.path() / "out/timeline.json");
     const nlohmann::json statistics = statistics_of(here);
 
-    // Counted: of so many slices and steps, an assertion each takes minutes.
+    // Counted, since an assertion for each of so many slices and steps would take minutes.
     std::map<std::string, std::size_t> broken;
     const auto require_each = [&](bool holds, const char* rule) {
         if (!holds)
             ++broken[rule];
     };
 
-    // Each slice names a triangle of one base, and the units that take parts name each part once.
+    // Each slice names triangles of one base only, and units that take parts name each part once.
     std::map<std::uint64_t, std::uint64_t> base_of;
     std::map<std::string, std::set<std::pair<std::uint64_t, std::string>>> items;
     for (const Timeline::Slice& slice : timeline.slices) {
         if (!slice.arguments.contains("triangle"))
             continue;
-        // These two hold a triangle as long as they are not starved.
+        // These two hold a triangle whenever they are not starved.
         if (slice.track == "get_triangle" || slice.track == "tessellation")
             require_each(slice.state != "starved", "holds a triangle and is not starved");
         const std::uint64_t triangle = slice.arguments.at("triangle");
@@ -434,7 +434,7 @@ TEST_CASE("a triangle can be followed through the timeline") {
             require_each(part.empty() == (take_all.count(unit) == 1), "a part is named where parts are taken");
     }
 
-    // Steps lie in their triangle's slices. A flow begins once, in Get Triangle; ends once, in its last unit.
+    // Steps lie within their triangle's slices. A flow begins once, in Get Triangle, and ends once, in its last unit.
     std::map<std::string, std::uint64_t> ends;
     std::size_t unfinished = 0;
     for (const auto& [triangle, steps] : timeline.flows) {

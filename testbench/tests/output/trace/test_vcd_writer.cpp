@@ -33,7 +33,7 @@ std::ostream& operator<<(std::ostream& out, const Stamp& stamp) {
     return out;
 }
 
-/// A VCD file, read word by word and refused where it breaks the format's rules.
+/// A VCD file, read word by word; input that violates the format is refused.
 struct VcdReading {
     explicit VcdReading(const std::string& text) {
         std::istringstream words(text);
@@ -135,7 +135,7 @@ struct Operation {
     std::uint64_t value;
 };
 
-/// What a simulation does to a writer.
+/// The calls that a simulation makes to a writer.
 struct Stimulus {
     struct Signal {
         std::string scope, name;
@@ -167,7 +167,7 @@ struct Stimulus {
         return out.str();
     }
 
-    /// The same by walking through every cycle and comparing all values with those before.
+    /// The expected changes, found by stepping through every cycle and comparing all values with the previous ones.
     std::vector<Stamp> expect(std::uint64_t units_per_cycle) const {
         const std::uint64_t end = cycles.empty() ? finish : std::max(finish, cycles.back().first + 1);
         std::vector<std::uint64_t> values(signals.size()), before;
@@ -253,7 +253,7 @@ class StimulusMaker {
     std::mt19937_64 random_;
 };
 
-/// What the file holds beside its declarations; checks the count of changes.
+/// The file's content after its declarations; checks the number of changes.
 std::vector<Stamp> stamps_of(const Stimulus& stimulus) {
     std::uint64_t changes = 0;
     const VcdReading reading(stimulus.write(&changes));
@@ -264,7 +264,7 @@ std::vector<Stamp> stamps_of(const Stimulus& stimulus) {
     return reading.stamps;
 }
 
-/// For what is too long to be printed.
+/// For values that are too long to print.
 bool agrees(const Stimulus& stimulus) {
     return stamps_of(stimulus) == stimulus.expect(1);
 }
@@ -371,14 +371,14 @@ TEST_CASE("VCD: windows at and beyond the ends") {
     CHECK(with(3, 3) == Stamps{{3, true, all(ones, 1)}, {4, false, {}}});
     CHECK(with(7, 8) == Stamps{{7, true, all(ones, 0)}, {8, false, all(5, 1)}, {9, false, {}}});
     CHECK(with(9, ones) == Stamps{{9, true, all(5, 0)}, {20, false, {}}});
-    // Between the last activity and the end, at it, past it, up to it, and empty.
+    // Windows that begin between the last activity and the end, at the end or after it, and empty ones.
     CHECK(with(15, 30) == Stamps{{15, true, all(5, 0)}, {20, false, {}}});
     CHECK(with(20, 30) == Stamps{{20, true, all(5, 0)}});
     CHECK(with(21, 30) == Stamps{{20, true, all(5, 0)}});
     CHECK(with(ones, ones) == Stamps{{20, true, all(5, 0)}});
     CHECK(with(0, 1) == Stamps{{0, true, all(0, 0)}, {2, false, {}}});
     CHECK(with(7, 3) == Stamps{{7, true, all(ones, 0)}});
-    // The run's end is no earlier than the last cycle's.
+    // The run's end is not before the last cycle's end.
     stimulus.finish = 0;
     CHECK(with(8, ones) == Stamps{{8, true, all(5, 1)}, {9, false, {{"top.valid", 0}}}});
     stimulus.cycles.clear();

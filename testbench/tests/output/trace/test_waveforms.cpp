@@ -28,7 +28,7 @@ std::vector<fs::path> files_ending_in(const std::string& extension) {
     return files;
 }
 
-/// What a translate filter says: number to text, colours left out.
+/// The entries of a translate filter: number to text, without colours.
 std::map<unsigned, std::string> read_filter(const std::string& name) {
     std::map<unsigned, std::string> names;
     for (const std::string& line : lines_of(read_all(waveforms() / name))) {
@@ -73,7 +73,7 @@ TEST_CASE("every signal a save file shows is in the default job's waveforms and 
                   modern = traced("design=modern");
     const std::vector<fs::path> views = files_ending_in(".gtkw");
     std::set<std::string> names;
-    // Thresholds chosen such that their registers are exact: 14 fraction bits, and 8.
+    // Thresholds whose registers are exact: with 14 fraction bits, and with 8.
     const std::map<std::string, std::uint64_t> constant{
         {"tessera.tessellation_tests_0.normal_test.threshold", (1u << 14) / 8},
         {"tessera.tessellation_tests_0.view_test.threshold", 5 << 8},

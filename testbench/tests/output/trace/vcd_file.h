@@ -16,13 +16,13 @@ struct VcdFile {
         std::vector<std::pair<std::uint64_t, std::uint64_t>> changes;  ///< time and value, after the first time stamp
 
         std::uint64_t at(std::uint64_t time) const;
-        /// Of a signal of one bit: the cycles in which it is 1.
+        /// For a signal of one bit: the number of cycles in which it is 1.
         std::uint64_t high_cycles(std::uint64_t period, std::uint64_t end_time) const;
     };
 
     explicit VcdFile(const std::filesystem::path& file);
 
-    /// By its name: "tessera.transform.state".
+    /// Looks up a signal by name, for example "tessera.transform.state".
     const Signal& operator[](const std::string& name) const;
 
     std::map<std::string, Signal> signals;

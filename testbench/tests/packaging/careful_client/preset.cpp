@@ -2,7 +2,7 @@
 
 #include "modules/cci/design_parameters.h"
 
-// The example of modules/README.md: prints the latency that was preset.
+// The example of modules/README.md: prints the preset latency.
 int sc_main(int, char**) {
     cci_utils::broker global("global");
     cci::cci_register_broker(global);

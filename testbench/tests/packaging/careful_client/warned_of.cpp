@@ -1,4 +1,4 @@
-// What tessera's own warnings find here is none of its business.
+// Code that tessera's warnings would report; they must not apply to a client.
 int narrowed(long number) {
     int number_too = 0;
     {

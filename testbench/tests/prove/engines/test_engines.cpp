@@ -12,8 +12,8 @@
 #include "testbench/tests/support/job_settings.h"
 #include "testbench/tests/support/source_folder.h"
 
-// Timed mode by a schedule is timed mode by the clock: all figures, the order of the mesh, every item's cycles. Which of them
-// a run takes. Random designs are compared by tests of their own (testbench/prove/engines).
+// Timed mode by a schedule equals timed mode by the clock in all figures, the order of the mesh and every item's
+// cycles; and the choice of the engine. testbench/prove/engines compares random designs.
 
 using namespace tessera;
 using namespace tessera::testing;
@@ -89,7 +89,7 @@ const CaseTable designs(
         CHECK(first_difference(clocked, engine_run(inputs.resolved.job, inputs.mesh, inputs.map, true)) == "");
     });
 
-/// Of the default job with these settings: the engine and why, or the message of the error.
+/// For the default job with these settings: the engine and the reason, or the error message.
 std::string chosen(const std::string& settings) {
     const Job job = with_settings(Job{}, settings);
     const Inputs inputs = load_inputs(job);

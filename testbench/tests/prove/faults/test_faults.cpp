@@ -16,7 +16,7 @@
 #include "testbench/tests/support/expect_section.h"
 #include "testbench/tests/support/timed_checks.h"
 
-// Every kind of fault at every place in both modes: who catches it. What nobody catches must have changed nothing.
+// Every kind of fault at every place, in both modes: which checks detect it. An undetected one changes nothing.
 
 using namespace tessera;
 using namespace tessera::testing;
@@ -24,10 +24,10 @@ using Catch::Contains;
 
 namespace {
 
-/// What a run with a fault came to.
+/// The result of a run with a fault.
 struct Outcome {
-    /// Who caught it, as FAULT_COVERAGE.md has them; empty: nobody; a point: the fault's transaction never came; with a
-    /// question mark: the run says nothing of the fault.
+    /// The checks that detected it, as in FAULT_COVERAGE.md. Empty: none; a point: the fault's transaction did not
+    /// occur; with a question mark: the run says nothing about the fault.
     std::string catchers;
     std::string mesh;  ///< a hash of the emitted set of triangles
     std::string text;  ///< what each of them found first, a line each
@@ -46,7 +46,7 @@ std::string mesh_hash(const EmittedMesh& mesh) {
     return std::to_string(hash);
 }
 
-/// Two triangles, all edges split twice, a queue that spills: a few hundred transactions on each wire.
+/// Two triangles, with all edges split twice and a queue that spills: a few hundred transactions on each wire.
 Job small_job(Mode mode) {
     Job job = full_split_job(1, 2);
     job.mode = mode;
@@ -92,7 +92,7 @@ Outcome run_here(Mode mode, const std::optional<Fault>& fault) {
         outcome.catch_by('L', error.what());
     }
     const bool drained = outcome.catchers.empty();
-    // Whoever stops a run by an error may do so before the next transaction could come.
+    // A check that stops a run with an error may do so before the next transaction.
     if (units && units->trigger().waits_for_next() && (drained || outcome.catchers == "D"))
         outcome.catch_by('?', "no later transaction came to change places with");
     if (units && !units->trigger().injected())
@@ -113,7 +113,7 @@ Outcome run_here(Mode mode, const std::optional<Fault>& fault) {
     return outcome;
 }
 
-/// In a process of its own: SystemC elaborates once in each.
+/// In a child process, since SystemC elaborates once per process.
 Outcome run(Mode mode, const std::optional<Fault>& fault) {
     const ChildEnd end = run_in_child([&] {
         Outcome outcome;
@@ -133,7 +133,7 @@ Outcome run(Mode mode, const std::optional<Fault>& fault) {
     return outcome;
 }
 
-/// Where a field of an item begins.
+/// Finds the position of a field of an item.
 struct FieldFinder {
     std::string name, component;
     std::uint64_t bits = 0;
@@ -158,7 +158,7 @@ std::uint64_t bit_of(const char* name, const char* component, Mode mode) {
     return *finder.found;
 }
 
-/// A wire, and a bit that matters of what it carries.
+/// A wire, and a significant bit of its items.
 struct Place {
     const char* name;
     std::uint64_t transaction;  ///< that both modes have
@@ -240,7 +240,7 @@ const std::vector<Kind> memory_kinds = {
     {FaultKind::response_reordered, "response_reordered", false},
 };
 
-/// One mode's table: a row a place, a column a kind.
+/// One mode's table, with a row for each place and a column for each kind.
 std::string table(Mode mode, const std::vector<Place>& places, std::vector<Kind> kinds) {
     if (mode == Mode::functional)
         kinds.erase(std::remove_if(kinds.begin(), kinds.end(), [](const Kind& k) { return !k.without_cycles; }),
@@ -301,8 +301,8 @@ TEST_CASE("faults at memories, timed mode: who catches which") {
     compare_with_document("Memories, timed mode", table(Mode::timed, memories, memory_kinds));
 }
 
-// The first edge is the plane's lower side, 32 texels long: its rectangles are 16 texels wide and 1 high. Rows of
-// the table have 33 entries of 4 bytes. Timed mode: functional mode asks for one entry at a time.
+// The first edge is the plane's lower side, 32 texels long: its rectangles are 16 texels wide and 1 high. Rows of the
+// table have 33 entries of 4 bytes. In timed mode; functional mode requests one entry at a time.
 TEST_CASE("read checks compare every entry of a rectangle, and name the address of the wrong one") {
     std::vector<std::uint64_t> wrong;
     for (const std::uint64_t corner : {0U, 1U, 2U, 3U}) {

@@ -1,4 +1,4 @@
-// What the fuzzers start from and what they found, through the same checks (testbench/prove/fuzz), in every build.
+// The fuzzers' seeds and findings, run through the same checks (testbench/prove/fuzz) in every build.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <filesystem>

@@ -12,7 +12,7 @@
 #include "testbench/prove/random_machines/random_case.h"
 #include "testbench/tests/support/program_runner.h"
 
-/// The generator of random cases and its program; that the cases hold is what tessera_random_cases itself is run for.
+/// Tests the generator of random cases and its program; tessera_random_cases itself tests that the cases pass.
 using namespace tessera;
 using Catch::Contains;
 

@@ -26,14 +26,14 @@ inline std::uint32_t distance(std::uint32_t a, std::uint32_t b) {
 inline TexCoord middle_of(const TexCoord& a, const TexCoord& b) {
     return {(a.u + b.u) >> 1, (a.v + b.v) >> 1};
 }
-/// Whether the hardware's Rank and Bound Tests consider the edge at all.
+/// Whether the hardware's Rank and Bound Tests evaluate the edge at all.
 inline bool differs_by_even_texels(const TexCoord& a, const TexCoord& b, const datapath::Formats& formats) {
     const std::uint32_t two_texels = std::uint32_t{2} << formats.texture.fraction;
     return !(a == b) && distance(a.u, b.u) % two_texels == 0 && distance(a.v, b.v) % two_texels == 0;
 }
 
-/// The hardware's recursion with the cut `greatest_rank`, from its specification: of a triangle's edges that split, the
-/// one of greatest rank is bisected; of equals the longer, then the first. splits(a, b), rank(a, b): of an edge.
+/// The hardware's recursion with the cut `greatest_rank`, from its specification: the split edge of greatest rank is
+/// bisected; among equals the longer, then the first. splits(a, b) and rank(a, b) are those of an edge.
 template <class Splits, class Rank>
 void refine(const Corners& t, const Splits& splits, const Rank& rank, std::vector<Corners>& finished) {
     int chosen = -1;
@@ -67,7 +67,7 @@ std::vector<Corners> refine_all(const std::vector<Corners>& base, const Splits& 
     return finished;
 }
 
-/// An entry a texel, read as the hardware reads it.
+/// A table with one entry per texel, read like the hardware does.
 struct TexelTable {
     const std::vector<std::uint16_t>& entries;
     std::uint32_t columns, rows;
@@ -97,8 +97,8 @@ inline double code_at(const QuantisedMap& map, const TexCoord& t, int fraction) 
     return map.code(within(t.u >> fraction, g.width, g.address_u), within(t.v >> fraction, g.height, g.address_v));
 }
 
-/// The vertical error at every grid point, in codes; of a point in several triangles the largest. heights: of the
-/// vertices; null: the map's.
+/// The vertical error at every grid point, in codes; for a point in several triangles the largest. heights: those of
+/// the vertices; null: the map's.
 inline std::vector<double> vertical_errors(const QuantisedMap& map, const std::vector<Corners>& mesh, int fraction,
                                            const QuantisedMap* heights = nullptr) {
     const datapath::MapGeometry& g = map.geometry;
@@ -149,8 +149,8 @@ inline ErrorFigures error_figures(const std::vector<double>& errors) {
     return figures;
 }
 
-/// Edges that not exactly two triangles share, whole periods apart or not, and that do not lie on the border of the
-/// base mesh's rectangle: none in a mesh without cracks over a rectangle.
+/// The number of edges that are not shared by exactly two triangles, also modulo whole periods, and do not lie on the
+/// border of the base mesh's rectangle; 0 for a mesh without cracks over a rectangle.
 inline std::size_t count_cracks(const std::vector<Corners>& mesh, const datapath::MapGeometry& map,
                                 const datapath::Formats& formats) {
     const auto period = [&](std::uint32_t side, AddressMode mode) {
@@ -187,7 +187,7 @@ inline QuantisedMap empty_map(std::uint32_t width, std::uint32_t height, Address
     return map;
 }
 
-/// The base mesh of mesh.source = "lattice" over the map, as the tables take it.
+/// The base mesh of mesh.source = "lattice" over the map, in the form that the tables take.
 inline std::vector<Corners> lattice_triangles(const datapath::MapGeometry& map, std::uint32_t spacing,
                                               const datapath::Formats& formats) {
     const BaseMesh mesh =
@@ -207,7 +207,7 @@ inline std::vector<Corners> lattice_triangles(const datapath::MapGeometry& map, 
     return triangles;
 }
 
-/// Noise, steps, few spikes or slopes, at full scale or at a few codes.
+/// Noise, steps, a few spikes or slopes, at full scale or a few codes.
 inline QuantisedMap random_map(Random& random, std::uint32_t width, std::uint32_t height, AddressMode u,
                                AddressMode v) {
     QuantisedMap map = empty_map(width, height, u, v);
@@ -227,7 +227,7 @@ inline QuantisedMap random_map(Random& random, std::uint32_t width, std::uint32_
     return map;
 }
 
-/// The west half of Crater Lake in codes of 16 bits, and the metres of one.
+/// The west half of Crater Lake in codes of 16 bits, and the metres per code.
 struct CraterLake {
     QuantisedMap map;
     double metres = 0;
@@ -242,7 +242,7 @@ struct CraterLake {
     }
 };
 
-/// The least threshold whose mesh has at most so many triangles. mesh(threshold): larger thresholds, fewer triangles.
+/// The least threshold whose mesh has at most `triangles` triangles. mesh(threshold): larger thresholds, fewer of them.
 template <class Mesh>
 std::uint32_t threshold_for(std::size_t triangles, std::uint32_t highest, const Mesh& mesh) {
     std::uint32_t low = 0, high = highest;

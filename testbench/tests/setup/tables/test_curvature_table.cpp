@@ -95,7 +95,7 @@ TEST_CASE("A quadratic's curvature is in every cell within rounding, and nothing
     CHECK(table.covered.width == 64);
     CHECK(table.entries.size() == datapath::curvature_entries(table.covered));
     for (int level = 2; level <= 4; ++level) {
-        const auto entry = entry_at(table, 32, 24, level);  // its square lies on the map
+        const auto entry = entry_at(table, 32, 24, level);  // its square lies within the map
         const double side = std::exp2(level), unit = in_codes(1, entry);
         CHECK(in_codes(entry.xx, entry) == Approx(3 * side * side / 4).margin(unit / 2));
         CHECK(in_codes(entry.xy, entry) == Approx(-2 * side * side / 4).margin(unit / 2));
@@ -115,7 +115,7 @@ TEST_CASE("What a quadratic leaves is the root of its mean squared error") {
     const CurvatureTable table = make_curvature_table(map, {}, formats);
     const auto entry = entry_at(table, 16, 16, 5);
     CHECK(in_codes(entry.rest, entry) == Approx(1000).epsilon(0.02));
-    // Periods apart the same.
+    // The same at a distance of whole periods.
     CHECK(datapath::pack_curvature(entry_at(table, 16 + 32, 16 + 64, 5)) == datapath::pack_curvature(entry));
 }
 

@@ -12,7 +12,7 @@ namespace {
 
 const datapath::Formats formats;
 
-/// With codes from `heights`, against `map`.
+/// Errors of the mesh with codes from `heights`, measured against `map`.
 std::vector<double> errors_of(const QuantisedMap& heights, const QuantisedMap& map, const std::vector<Corners>& mesh) {
     return vertical_errors(map, mesh, formats.texture.fraction, &heights);
 }

@@ -22,7 +22,7 @@ TexelTable table_of(const std::vector<std::uint16_t>& entries, const RankTables&
     return {entries, tables.columns, tables.rows, formats.texture.fraction};
 }
 
-/// A map and a lattice over it, clamped (of any size) or repeated (of whole quads).
+/// A map with a lattice over it, clamped (of any size) or repeated (of whole quads).
 struct RandomCase {
     QuantisedMap map;
     std::vector<Corners> base;
@@ -41,7 +41,7 @@ struct RandomCase {
     }
 };
 
-/// The mesh of those splits of the hierarchy whose entry is above the threshold, made in the host's order.
+/// The mesh of the hierarchy's splits whose entry is above the threshold, made in the host's order.
 std::vector<Corners> replay(const SplitHierarchy& hierarchy, std::vector<Corners> mesh, const TexelTable& table,
                             std::uint32_t threshold) {
     for (const EdgeSplit& split : hierarchy.splits) {
@@ -72,7 +72,7 @@ Sorted sorted(const std::vector<Corners>& mesh) {
     return all;
 }
 
-/// Cases of the random tests: so many, or TESSERA_TABLE_CASES.
+/// Number of cases of a random test: `usual`, or TESSERA_TABLE_CASES.
 int random_cases(int usual) {
     const char* wanted = std::getenv("TESSERA_TABLE_CASES");
     return wanted == nullptr ? usual : std::stoi(wanted);
@@ -172,7 +172,7 @@ TEST_CASE("Off the lattice no grid point lies beyond the Bound Test's threshold 
 
 namespace {
 
-/// A view of a clamped map whose texels and codes measure `steps`, in LSB of positions and distances.
+/// A view of a clamped map; `steps` is the size of texels and codes, in LSB of positions and distances.
 struct View {
     SurfaceSteps steps;
     datapath::TransformParameters transform;
@@ -227,7 +227,7 @@ struct View {
         return result;
     }
 
-    /// The largest number of pixels between a grid point in the picture and one so many codes above or below it.
+    /// Largest distance in pixels from a grid point in the picture to the point `errors` codes above or below it.
     double largest_error(const QuantisedMap& map, const std::vector<double>& errors) const {
         double largest = 0;
         for (std::uint32_t row = 0; row < map.geometry.height; ++row) {
@@ -267,7 +267,7 @@ TEST_CASE("No grid point in the picture appears farther from the mesh than the b
     seen.distances = true;
     seen.rank_bits = 0;
     int views = 0, broken_without = 0;
-    double nearest = 0;  // to the bound, as a part of it
+    double nearest = 0;  // largest error, relative to the bound
     for (int trial = 0; trial < random_cases(1200); ++trial) {
         const RandomCase at(random);
         if (at.map.geometry.address_u == AddressMode::repeat || at.map.geometry.address_v == AddressMode::repeat)
@@ -342,7 +342,7 @@ TEST_CASE("Radii nest: a midpoint's covers those of all that need it, from where
 TEST_CASE("Thresholds as seen: twice the distance, or half the picture, is worth an octave") {
     const ViewedScale view{512, 1, 1, 1, 2};
     const auto rank = [&](double error, bool per_pixel) { return seen_rank_threshold(error, per_pixel, view); };
-    // An error of 1 code at distance 1, the sum of two distances 2, is 512 pixels high and its texel 1024 pixels wide.
+    // An error of 1 code at distance 1 (sum of two distances: 2) is 512 pixels high; a texel is 1024 pixels wide.
     CHECK(rank(512, false) == (16 - 2) << 10);
     CHECK(rank(1024, false) == 16 << 10);
     CHECK(rank(512 * 1024, true) == (16 - 4) << 10);

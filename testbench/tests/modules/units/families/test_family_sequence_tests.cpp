@@ -13,8 +13,8 @@
 #include "testbench/tests/support/case_table.h"
 #include "testbench/tests/support/timed_modules.h"
 
-// Sequence Tests of a machine of families alone, through its sockets: three lanes, two Normal Tests. The table tests are
-// stubs that answer with given bits.
+// Sequence Tests of a machine of families alone, through its sockets, with three lanes and two Normal Tests. The table
+// tests are stubs that respond with given bits.
 
 using namespace tessera;
 using namespace tessera::testing;
@@ -48,7 +48,7 @@ HeightResult answer(const HeightOperands& edge) {
     return {edge.tag, (says(edge.tag) & datapath::summed_height_bit) != 0};
 }
 
-/// In place of a table test: keeps what it was sent.
+/// Replaces a table test; records what it receives.
 template <class Operands, class Result>
 class StubTest : public Stage<Operands, Result> {
   public:
@@ -140,7 +140,7 @@ struct Bench {
         return registers;
     }
 
-    /// Every edge to its lane; every third triangle is a base triangle, with three edges.
+    /// Adds every edge to its lane; every third triangle is a base triangle with three edges.
     void add(unsigned triangle) {
         PartTag tag;
         tag.triangle = triangle;

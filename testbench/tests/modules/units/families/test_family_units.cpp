@@ -57,7 +57,7 @@ const std::initializer_list<Row> designs{{"one lane", 1, 8, {}},
                                          {"nine lanes, random stalls", 9, 4, {3, 400, 9}},
                                          {"four lanes, one family, random stalls", 4, 1, {4, 300, 20}}};
 
-/// What every bench has: a clock, and outputs to sinks.
+/// The common part of every bench: a clock, and outputs to sinks.
 struct Surroundings {
     datapath::Registers registers = with_families();
     Design design;
@@ -74,7 +74,7 @@ struct Surroundings {
     }
 };
 
-/// A value that names a corner or midpoint of a triangle.
+/// A value that identifies a corner or midpoint of a triangle.
 std::int32_t mark(unsigned triangle, unsigned vertex) {
     return static_cast<std::int32_t>(10 * triangle + vertex);
 }
@@ -85,7 +85,7 @@ unsigned split_of(unsigned triangle) {
     return is_base(triangle) ? 0 : 1 + triangle % 7;
 }
 
-/// Every fifth triangle is a base triangle, of which only P, N, T and t are known; the others split in all seven ways.
+/// Every fifth triangle is a base triangle with only P, N, T and t known; the others split in all seven ways.
 TakenTriangle taken(unsigned number) {
     TakenTriangle item;
     item.tag = number;
@@ -109,7 +109,7 @@ TakenTriangle taken(unsigned number) {
     return item;
 }
 
-/// What the vertex pipeline makes of it: parts in their order.
+/// The parts that the vertex pipeline makes of it, in order.
 std::vector<ScreenPoint> points(unsigned number) {
     std::vector<ScreenPoint> made;
     for (unsigned part = 0; part <= first_edge_part + 2; ++part) {
@@ -132,7 +132,7 @@ Ends ends(std::int32_t i, std::int32_t j) {
     return {std::min(i, j), std::max(i, j)};
 }
 
-/// By their marks: edges of a family's children that are not whole edges of the triangle; of a base triangle all.
+/// Edges of a family's children, by marks, that are not whole edges of the triangle; for a base triangle all.
 std::set<Ends> new_edges(unsigned number, bool second_diagonal) {
     std::set<Ends> edges;
     const datapath::ChildIndices children = datapath::triangulate(split_of(number), second_diagonal);
@@ -220,7 +220,7 @@ void check_tessellation(const Row& row) {
 const CaseTable tessellation("families, Tessellation: each family and each of its new edges once, ", designs,
                              check_tessellation);
 
-/// What the tests find of an edge.
+/// Whether the tests split an edge.
 bool splits(const Ends& edge) {
     return (edge.first + edge.second) % 3 == 0;
 }
@@ -232,7 +232,7 @@ datapath::EdgeTests found(const Ends& edge) {
     return found;
 }
 
-/// A child as it must leave.
+/// A child as expected at the output.
 struct Child {
     std::array<std::int32_t, 3> corners{};
     unsigned split = 0;
@@ -298,7 +298,7 @@ struct PassOrTessellateBench : Surroundings {
             add(number);
     }
 
-    /// A family, and its edges to their lanes in a random order.
+    /// Adds a family, and sends its edges to their lanes in a random order.
     void add(unsigned number) {
         const Family family = family_of(number);
         from_tessellation.items.push_back(family);
