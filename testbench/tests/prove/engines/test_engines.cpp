@@ -68,6 +68,11 @@ const CaseTable designs(
          "hardware.tests_units=3 hardware.height_test=curvature tests.curvature_threshold=1 timing.stalls_seed=5 "
          "timing.stalls_per_mille=200 timing.stalls_longest=9",
          "crater_lake_24"},
+        {"sums over one texel from the map", "hardware.one_texel_from_map=true"},
+        {"sums over one texel from the map, three tests units, one slow port, random stalls",
+         "hardware.one_texel_from_map=true hardware.tests_units=3 timing.summed_height_table_ports=12 "
+         "timing.displacement_map_ports=1 timing.displacement_map_width=1 timing.stalls_seed=3 "
+         "timing.stalls_per_mille=300 timing.stalls_longest=20"},
         {"random stalls, last in first out",
          "hardware.queue_order=lifo timing.stalls_seed=3 timing.stalls_per_mille=300 "
          "timing.stalls_longest=20"},
