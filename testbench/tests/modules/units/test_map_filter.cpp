@@ -170,9 +170,10 @@ const CaseTable displaced("a bilinear filter in Displace Vertex, ", rows, [](con
         const std::uint32_t column = last ? (row.mode == datapath::AddressMode::clamp ? 4 : 0) : in.t.u >> 12;
         const std::uint32_t up = in.t.v == 3u << 12 ? (row.mode == datapath::AddressMode::clamp ? 2 : 0) : in.t.v >> 12;
         CHECK(out.code == bench.codes[5 * up + column]);
-        CHECK(out.displaced_n ==
-              (row.families && !edge ? bump(in.n, in.displaced_n, in.handedness, bench.normal_at(in.t), formats, unused)
-                                     : in.displaced_n));
+        if (row.families)  // other designs have no such field on the stream
+            CHECK(out.displaced_n ==
+                  (edge ? in.displaced_n
+                        : bump(in.n, in.displaced_n, in.handedness, bench.normal_at(in.t), formats, unused)));
     }
     CHECK(unit.displacement_map.reads() == 4 * items);
     CHECK(unit.displacement_map.requests() == items);
