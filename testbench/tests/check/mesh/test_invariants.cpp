@@ -265,7 +265,7 @@ TEST_CASE("figures of single triangles") {
     }
 }
 
-TEST_CASE("each violation counts, what is rounding's or the input's does not; the figures are complete") {
+TEST_CASE("each violation counts, what is rounding's or the input's does not, the figures are complete") {
     InvariantResult result;
     result.collapsed = result.turned_over = result.displaced_collapsed = 5;
     result.open_texture_seam_edges = result.open_crease_edges = 2;

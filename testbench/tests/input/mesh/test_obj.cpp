@@ -157,7 +157,7 @@ TEST_CASE("corners without texture coordinates get the map laid over the mesh, w
                StartsWith("1 vertices have no texture coordinates, first used in line 10"));
 }
 
-TEST_CASE("flat triangles are dropped and counted; nothing left is an error") {
+TEST_CASE("flat triangles are dropped and counted, nothing left is an error") {
     const BaseMesh mesh = parse(square + "f 1/1 2/2 3/3\nf 1/1 1/1 2/2\nf 1/1 3/3 4/4\nf 1/1 2/2 1/1 2/2\n");
     CHECK(mesh.triangles.size() == 2);
     CHECK(mesh.dropped_degenerate == 3);
@@ -200,7 +200,7 @@ TEST_CASE("T-junctions, crowded edges and changes of winding are told") {
     require_complete(twisted);
 }
 
-TEST_CASE("given normals are made unit; without length they are computed") {
+TEST_CASE("given normals are made unit, without length they are computed") {
     const BaseMesh mesh =
         parse(square + "vn 0 0 0\nvn 0 0 1e-320\nvn 1e38 1e38 1e38\nvn 0 3 4\nf 1/1/2 2/2/3 3/3/4 4/4/5\n");
     require_complete(mesh);
@@ -238,7 +238,7 @@ TEST_CASE("computed normals are those of the surface, across texture seams, and 
     }
 }
 
-TEST_CASE("mirrored texture turns the handedness; mixed points take the majority") {
+TEST_CASE("mirrored texture turns the handedness, mixed points take the majority") {
     const BaseMesh mirrored = parse(square + "vt -1 0\nvt -1 1\nf 1/1/1 2/5/1 3/6/1\n");
     CHECK(mirrored.vertices[0].handedness == -1);
     CHECK(mirrored.vertices[0].tangent == glm::dvec3(-1, 0, 0));

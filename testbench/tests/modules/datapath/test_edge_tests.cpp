@@ -145,7 +145,7 @@ TEST_CASE("View Test: one end behind the near plane counts as long, two as invis
     }
 }
 
-TEST_CASE("Tex Coord Test: false if the midpoint's texel, or part of one, is an end's; every edge of 3 + 2 bits") {
+TEST_CASE("Tex Coord Test: false if the midpoint's texel, or part of one, is an end's, every edge of 3 + 2 bits") {
     Formats formats;
     formats.texture = Format::make_unsigned(6, 2);
     formats.tex_coord_fraction = GENERATE(0, 1, 2);

@@ -16,7 +16,7 @@ TEST_CASE("integer part: floor of the coordinate, every one of a narrow format")
     }
 }
 
-TEST_CASE("texel index: inside is itself; beyond the border the last texel (clamp), the first again (repeat)") {
+TEST_CASE("texel index: inside is itself, beyond the border the last texel (clamp), the first again (repeat)") {
     for (std::uint32_t size = 1; size <= 9; ++size) {
         for (std::uint32_t index = 0; index <= 40; ++index) {
             CHECK(texel_index(index, size, AddressMode::clamp) == (index < size ? index : size - 1));

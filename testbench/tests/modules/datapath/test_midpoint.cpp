@@ -22,7 +22,7 @@ bool right(Integer a, Integer b) {
 
 }  // namespace
 
-TEST_CASE("midpoint: floor of the mean, commutative, between its operands; every pair of 8 bits") {
+TEST_CASE("midpoint: floor of the mean, commutative, between its operands, every pair of 8 bits") {
     for (std::int32_t a = -128; a <= 127; ++a) {
         for (std::int32_t b = -128; b <= 127; ++b)
             if (!right(a, b) || !right(static_cast<std::uint32_t>(a + 128), static_cast<std::uint32_t>(b + 128)))

@@ -117,7 +117,7 @@ constexpr std::array<std::pair<std::uint32_t, std::uint32_t>, 8> sizes{
 
 }  // namespace
 
-TEST_CASE("rectangles: size by division, at least one texel, at most the map; commutative") {
+TEST_CASE("rectangles: size by division, at least one texel, at most the map, commutative") {
     Random random(14);
     for (int k = 0; k < 1'000'000; ++k) {
         Formats formats;

@@ -369,7 +369,7 @@ TEST_CASE("registers of other formats than the device's are not written") {
     bench.run();
 }
 
-TEST_CASE("debug transport reads all registers, writes plain ones, and starts nothing; DMI is refused") {
+TEST_CASE("debug transport reads all registers, writes plain ones, and starts nothing, DMI is refused") {
     const MachineSetup setup = setup_for({"", false});
     Bench bench({formats_of(setup)}, design_of(setup), true);
     bench.cpu.program = [&](Processor& cpu) {

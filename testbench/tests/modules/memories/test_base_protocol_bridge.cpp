@@ -232,7 +232,7 @@ TEST_CASE("bridge: END_REQ may come later, and its delay counts") {
     CHECK(bench.reader.answered == Cycles{24});
 }
 
-TEST_CASE("bridge: answers in any order; the reader gets them in the order of its requests") {
+TEST_CASE("bridge: answers in any order, the reader gets them in the order of its requests") {
     ScriptedBench bench(Way::end_request, 4);
     bench.reader.reads = gathers(3, 2);  // entries 0 to 5, sent in 10 to 15
     const std::vector<std::size_t> order{5, 1, 2, 4, 0, 3};
@@ -303,7 +303,7 @@ namespace {
 TLM_DECLARE_EXTENDED_PHASE(of_its_own);
 }
 
-TEST_CASE("bridge: breaches of a memory are errors that name the bridge's socket; other phases are ignored") {
+TEST_CASE("bridge: breaches of a memory are errors that name the bridge's socket, other phases are ignored") {
     ScriptedBench bench(Way::end_request);
     bench.reader.reads = gathers(1, 2);
     Payload stranger;
