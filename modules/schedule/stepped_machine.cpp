@@ -86,9 +86,13 @@ SteppedMachine::SteppedMachine(const Plan& plan)
       calculate_new_p_(calls_, passes_, calculate_new_p_call, to_calculate_new_p_, plan.calculate_new_p.pipeline),
       displace_vertex_(calls_, passes_, displace_vertex_call, to_displace_vertex_, plan.displace_vertex.pipeline),
       transform_(calls_, passes_, transform_call, to_transform_, plan.transform.pipeline) {
-    has(calculate_new_p, calculate_new_p_);
-    has(displace_vertex, displace_vertex_);
-    has(transform, transform_);
+    const auto add = [this](Unit unit, unsigned call, SteppedStage& stage) {
+        has(unit, stage);
+        stages_[call] = &stage;
+    };
+    add(calculate_new_p, calculate_new_p_call, calculate_new_p_);
+    add(displace_vertex, displace_vertex_call, displace_vertex_);
+    add(transform, transform_call, transform_);
     has(displacement_map, displacement_map_.ports());
     has(displacement_map_for_tests, displacement_map_for_tests_.ports());
     has(normal_map, normal_map_.ports());
@@ -97,26 +101,18 @@ SteppedMachine::SteppedMachine(const Plan& plan)
     displace_vertex_.delivers_to(to_transform_, all_parts, transform);
     displace_vertex_.reads(&Facts::displace_vertex, displacement_map_, 0, displacement_map);
     transform_.delivers_to(to_join_, all_parts, pass_or_tessellate);
-    stages_[transform_call] = &transform_;
-    stages_[displace_vertex_call] = &displace_vertex_;
-    stages_[calculate_new_p_call] = &calculate_new_p_;
     branches_.push_back({&to_calculate_new_p_, all_parts, 0, 0, calculate_new_p});
     for (unsigned k = 0; k < plan.tests_units; ++k) {
         Tests& tests = *tests_.emplace_back(std::make_unique<Tests>(*this, plan.tests[k], k));
-        has(of_tests(k, calculate_new_u), tests.calculate_new_u);
-        has(of_tests(k, tex_coord_test), tests.tex_coord_test);
-        has(of_tests(k, height_test), tests.height_test);
-        has(of_tests(k, normal_test), tests.normal_test);
-        has(of_tests(k, view_test), tests.view_test);
+        add(of_tests(k, calculate_new_u), of_tests_call(k, calculate_new_u_call), tests.calculate_new_u);
+        add(of_tests(k, tex_coord_test), of_tests_call(k, tex_coord_test_call), tests.tex_coord_test);
+        add(of_tests(k, height_test), of_tests_call(k, height_test_call), tests.height_test);
+        add(of_tests(k, normal_test), of_tests_call(k, normal_test_call), tests.normal_test);
+        add(of_tests(k, view_test), of_tests_call(k, view_test_call), tests.view_test);
         has(of_tests(k, collect_tests), tests.collect_states, tests.collect_level);
         transform_.delivers_to(tests.corners, vertex_parts, of_tests(k, view_test));
         const unsigned of_edge = 1u << (first_edge_part + k) | 1u << k | 1u << (k + 1) % 3;
         const unsigned takes = plan.tests_units == 1 ? edge_parts | vertex_parts : of_edge;
-        stages_[of_tests_call(k, calculate_new_u_call)] = &tests.calculate_new_u;
-        stages_[of_tests_call(k, tex_coord_test_call)] = &tests.tex_coord_test;
-        stages_[of_tests_call(k, height_test_call)] = &tests.height_test;
-        stages_[of_tests_call(k, normal_test_call)] = &tests.normal_test;
-        stages_[of_tests_call(k, view_test_call)] = &tests.view_test;
         branches_.push_back({&tests.input, takes, 0, 0, of_tests(k, calculate_new_u)});
     }
 }
