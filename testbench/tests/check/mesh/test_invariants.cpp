@@ -164,8 +164,12 @@ TEST_CASE("a triangle that differs in anything is found") {
             [](auto& t) { t.stopped_by ^= datapath::view_bit; },
             [](auto& t) { t.culled = !t.culled; },
             [](auto& t) { std::rotate(t.corners.begin(), t.corners.begin() + 1, t.corners.end()); }};
-        for (const auto& change : changes)
+        for (const auto& change : changes) {
             require_only(check_with(change), {{"differing_triangles", 1}});
+            EmittedTriangle changed = plane.mesh.triangles.front();
+            change(changed);
+            CHECK_FALSE(changed == plane.mesh.triangles.front());
+        }
         const std::string text = check_with(changes[0]).first_violation;
         CHECK(text.find("base triangle 5: a triangle differs: P (") == 0);
         CHECK(text.find("; it should be P (") != std::string::npos);
