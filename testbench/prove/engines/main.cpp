@@ -19,17 +19,14 @@ namespace {
 
 using namespace tessera;
 
-int compare(std::uint64_t first, std::uint64_t count, bool list) {
+int compare(std::uint64_t first, std::uint64_t count) {
     std::uint64_t failed = 0;
     for (std::uint64_t seed = first; seed != first + count; ++seed) {
         const RandomCase drawn = make_scheduled_case(seed);
         const BaseMesh mesh = drawn.base_mesh();
         const HeightMap map = drawn.height_map();
-        const std::string clocked = engine_run(drawn.job, mesh, map, false);
-        const std::string difference = first_difference(clocked, engine_run(drawn.job, mesh, map, true));
-        if (list)
-            fmt::print("seed {}: {}: {}\n{}", seed, drawn.summary(), difference.empty() ? "equal" : "differ",
-                       clocked.substr(0, clocked.find("run.mode")));
+        const std::string difference =
+            first_difference(engine_run(drawn.job, mesh, map, false), engine_run(drawn.job, mesh, map, true));
         if (difference.empty())
             continue;
         ++failed;
@@ -44,20 +41,18 @@ int compare(std::uint64_t first, std::uint64_t count, bool list) {
 int sc_main(int argc, char** argv) {
     sc_core::sc_report_handler::set_actions(sc_core::SC_INFO, sc_core::SC_DO_NOTHING);
     std::uint64_t first = 1, count = 2000;
-    bool list = false;
     CLI::App app{"Compares the two engines of timed mode on random designs."};
     app.add_option("--seed", first, "the first design")->capture_default_str();
     app.add_option("--count", count, "designs, of consecutive seeds")
         ->capture_default_str()
         ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 32));
-    app.add_flag("--list", list, "what was compared of each design: digests of the mesh and of each unit's item times");
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
         return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::bad_input);
     }
     try {
-        return compare(first, count, list);
+        return compare(first, count);
     } catch (const std::exception& error) {
         fmt::print(stderr, "tessera_compare_engines: {}\n", error.what());
         return static_cast<int>(ExitCode::resource_limit);
