@@ -28,15 +28,6 @@ std::uint64_t items(const Unit& unit) {
     return unit.activity().items_in();
 }
 
-/// Sum of `figure` over all Tessellation Tests units.
-template <class Figure>
-std::uint64_t sum_over_tests(const Pipeline& pipeline, Figure figure) {
-    std::uint64_t sum = 0;
-    for (const TessellationTests& tests : pipeline.tessellation_tests)
-        sum += figure(tests);
-    return sum;
-}
-
 void add_triangles(Equations& list, const MachineSetup& setup, const HostedMachine& machine) {
     const Pipeline& p = machine.pipeline;
     const auto& counts = p.pass_or_tessellate.counts();

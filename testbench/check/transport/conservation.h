@@ -21,6 +21,15 @@ struct Conservation {
 /// counts that exist there.
 std::vector<Conservation> conservation(const Simulation& simulation);
 
+/// Sum of `figure` over all Tessellation Tests units.
+template <class Figure>
+std::uint64_t sum_over_tests(const Pipeline& pipeline, Figure figure) {
+    std::uint64_t sum = 0;
+    for (const TessellationTests& tests : pipeline.tessellation_tests)
+        sum += figure(tests);
+    return sum;
+}
+
 /// The combined result of the transport check and these equations.
 WorkResult work_result(const TransportCheck& check, const Simulation& simulation);
 

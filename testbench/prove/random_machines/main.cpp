@@ -46,12 +46,13 @@ void print_totals(std::uint64_t first, std::uint64_t count, std::uint64_t failed
 
 /// Writes the case as files, and its failure.
 void leave_failure(const RandomCase& random_case, Mode mode, const std::string& failure, const Order& order) {
+    const std::string mode_name = mode == Mode::timed ? "timed" : "functional";
     const std::filesystem::path folder =
-        std::filesystem::path(order.failures) / fmt::format("seed_{}", random_case.seed);
+        std::filesystem::path(order.failures) / fmt::format("seed_{}_{}", random_case.seed, mode_name);
     random_case.write(folder, mode);
     write_file(folder / "failure.txt", failure + "\n");
-    fmt::print("seed {}, {}: {}\n{}\n  in {}\n", random_case.seed, mode == Mode::timed ? "timed" : "functional",
-               random_case.summary(), failure, folder.string());
+    fmt::print("seed {}, {}: {}\n{}\n  in {}\n", random_case.seed, mode_name, random_case.summary(), failure,
+               folder.string());
     std::fflush(stdout);
 }
 

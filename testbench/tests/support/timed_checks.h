@@ -92,15 +92,6 @@ inline void require_empty(const Unit& unit) {
     CHECK(unit.describe_contents().empty());
 }
 
-/// Sum of `figure` over all Tessellation Tests units.
-template <class Figure>
-std::uint64_t sum_over_tests(const Pipeline& pipeline, Figure figure) {
-    std::uint64_t sum = 0;
-    for (const TessellationTests& tests : pipeline.tessellation_tests)
-        sum += figure(tests);
-    return sum;
-}
-
 /// Each unit receives as many items as another sends.
 inline void require_conservation(const Simulation& simulation) {
     for (const Conservation& equation : conservation(simulation)) {
