@@ -409,8 +409,7 @@ TEST_CASE("intermediates: Newton steps over the range of their operands") {
     check("reciprocal", inverse.step, step, true);
 }
 
-TEST_CASE(
-    "intermediates: those of every legal format fit the model's integers, and the first misfit of a wider format is named") {
+TEST_CASE("intermediates: every legal format fits the model's integers, and the first misfit of a wider one is named") {
     using Limits = FormatLimits;
     const auto misfit = [](const Formats& formats) {
         std::string found;

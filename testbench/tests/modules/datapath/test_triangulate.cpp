@@ -48,8 +48,7 @@ constexpr std::array<int, 8> children_of{1, 2, 2, 3, 2, 3, 3, 4};
 
 }  // namespace
 
-TEST_CASE(
-    "triangulate: all eight splits, both diagonals: covers the parent, keeps the winding, has no missing or extra edges") {
+TEST_CASE("triangulate: all eight splits, both diagonals: covers the parent, keeps winding, no edge missing or extra") {
     for (unsigned split = 0; split < 8; ++split) {
         for (const bool second : {false, true}) {
             const ChildIndices result = triangulate(split, second);
