@@ -71,10 +71,10 @@ struct Base {
 };
 
 const std::array bases{
-    Base{"a cylinder, its seam a period of the map",
+    Base{"a cylinder whose seam is a period of the map",
          "mesh.source=cylinder mesh.columns=8 mesh.rows=2 map.width=32 map.height=8 map.address_u=repeat", true,
          "errors of up to"},
-    Base{"a cylinder of quads that are no whole texels",
+    Base{"a cylinder whose quads are not whole texels",
          "mesh.source=cylinder mesh.columns=6 mesh.rows=2 map.width=26 map.height=9 map.address_u=repeat", true,
          "never split"},
     Base{"a sphere", "mesh.source=sphere mesh.columns=8 mesh.rows=4 map.width=32 map.height=16 map.address_u=repeat",
@@ -82,7 +82,7 @@ const std::array bases{
     Base{"a plane off the lattice", "map.width=24 map.height=20", true, "never split", plane_off_the_lattice},
     Base{"a plane that can be halved once", "mesh.columns=2 mesh.rows=2 map.width=20 map.height=12", true,
          "errors of up to"},
-    Base{"a cube, each face with the whole map", "map.width=16 map.height=16", false, "share a texel", cube},
+    Base{"a cube with the whole map on each face", "map.width=16 map.height=16", false, "share a texel", cube},
     Base{"the teapot",
          "mesh.source=patches mesh.file=teapot_newell.txt mesh.columns=1 mesh.rows=1 map.width=8 map.height=8 "
          "map.address_u=repeat map.address_v=repeat",

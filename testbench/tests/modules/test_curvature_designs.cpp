@@ -53,15 +53,15 @@ const CaseTable designs(
     {
         Row{"the paper's design", ""},
         {"functional", "mode=functional"},
-        {"a lattice that is wider than the map", "mesh.source=lattice mesh.spacing=16"},
+        {"a lattice wider than the map", "mesh.source=lattice mesh.spacing=16"},
         {"a repeated map", "map.address_u=repeat map.address_v=repeat"},
-        {"heights between texels", "hardware.displacement_filter=bilinear"},
-        {"fitted heights, which short edges read", "map.heights=fitted"},
-        {"beside the other tests", "tests.normal=true tests.view=true tests.highlight=true hardware.culling=back"},
+        {"interpolated heights", "hardware.displacement_filter=bilinear"},
+        {"fitted heights, read by short edges", "map.heights=fitted"},
+        {"alongside the other tests", "tests.normal=true tests.view=true tests.highlight=true hardware.culling=back"},
         {"three tests units, random stalls",
          "hardware.tests_units=3 timing.stalls_seed=3 timing.stalls_per_mille=300 timing.stalls_longest=20"},
         {"final edges", "hardware.final_edges=true"},
-        {"cheap tests first, final edges, beside the other tests, random stalls",
+        {"cheap tests first, final edges, alongside the other tests, random stalls",
          "hardware.test_order=cheap_first hardware.final_edges=true tests.normal=true tests.view=true "
          "timing.stalls_seed=5 timing.stalls_per_mille=300 timing.stalls_longest=20"},
         {"cheap tests first, functional", "hardware.test_order=cheap_first mode=functional"},
@@ -72,7 +72,7 @@ const CaseTable designs(
         {"families", "hardware.work=family"},
         {"the modern design", "hardware.design=modern"},
         {"the modern design, functional", "hardware.design=modern mode=functional"},
-        {"the modern design, beside the other tests",
+        {"the modern design, alongside the other tests",
          "hardware.design=modern tests.normal=true tests.view=true tests.highlight=true"},
         {"the modern design, a queue of one place that spills, random stalls",
          "hardware.design=modern hardware.queue_capacity=1 timing.stalls_seed=3 timing.stalls_per_mille=300 "
@@ -87,13 +87,13 @@ const CaseTable mipmap_designs(
     "with a Mipmap Test, ",
     {
         Row{"the paper's design", ""},
-        {"functional, of maxima", "mode=functional tests.mipmap_filter=maximum"},
-        {"a lattice that is wider than the map", "mesh.source=lattice mesh.spacing=16"},
-        {"a repeated map, of maxima",
+        {"functional, maximum filter", "mode=functional tests.mipmap_filter=maximum"},
+        {"a lattice wider than the map", "mesh.source=lattice mesh.spacing=16"},
+        {"a repeated map, maximum filter",
          "map.address_u=repeat map.address_v=repeat tests.mipmap_filter=maximum tests.mipmap_threshold=0.05"},
         {"three tests units, random stalls",
          "hardware.tests_units=3 timing.stalls_seed=3 timing.stalls_per_mille=300 timing.stalls_longest=20"},
-        {"cheap tests first, final edges, beside the other tests, a slow table behind a cache",
+        {"cheap tests first, final edges, alongside the other tests, a slow table behind a cache",
          "hardware.test_order=cheap_first hardware.final_edges=true tests.normal=true tests.view=true "
          "timing.mipmap_table_cache_bytes=256 timing.mipmap_table_latency=9 timing.mipmap_test_interval=2"},
         {"the modern design, four banks", "hardware.design=modern timing.mipmap_table_banks=4"},
@@ -121,11 +121,11 @@ struct SidesRow {
 
 const CaseTable sides("sides of the displacement map: ",
                       {
-                          SidesRow{"a Curvature Test has one of its own", "", true},
-                          {"three Curvature Tests share it", "hardware.tests_units=3", true},
-                          {"in the modern design", "hardware.design=modern", true},
-                          {"one behind a cache", "timing.displacement_map_cache_bytes=1024", false},
-                          {"one for the Summed Height Test",
+                          SidesRow{"a Curvature Test has its own", "", true},
+                          {"three Curvature Tests share one", "hardware.tests_units=3", true},
+                          {"a Curvature Test of the modern design has its own", "hardware.design=modern", true},
+                          {"only one behind a cache", "timing.displacement_map_cache_bytes=1024", false},
+                          {"only one with a Summed Height Test",
                            "hardware.height_test=summed_height hardware.one_texel_from_map=true tests.normal=true",
                            false},
                       },
@@ -146,7 +146,7 @@ const CaseTable sides("sides of the displacement map: ",
                                     p.displacement_map_for_tests->transactions());
                       });
 
-const CaseTable off("a test of heights that is off reads nothing and splits nothing: ",
+const CaseTable off("a disabled height test reads nothing and splits nothing: ",
                     {
                         Row{"Curvature Test", ""},
                         {"Mipmap Test", mipmap},

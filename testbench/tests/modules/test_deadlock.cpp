@@ -38,7 +38,7 @@ Job full_queue_job(Overflow overflow) {
 // Tessellation does not take; the tests and Transform keep what Pass or Tessellate does not take; Get Triangle keeps a
 // triangle whose parts are not taken; and the queue's first triangle waits for Get Triangle: the cycle of waiting units
 // is closed.
-TEST_CASE("a full queue that stalls is a deadlock, told unit by unit") {
+TEST_CASE("a full queue that stalls is a deadlock, reported unit by unit") {
     const MachineSetup setup = setup_of(full_queue_job(Overflow::stall));
     Simulation simulation(setup, 1'000'000, 1'000'000);
     const std::string report = simulation.run();
@@ -61,12 +61,12 @@ TEST_CASE("a full queue that stalls is a deadlock, told unit by unit") {
     CHECK(line_of(report, "off_chip_memory").empty());
 }
 
-TEST_CASE("the same queue that spills is none") {
+TEST_CASE("a full queue that spills is not a deadlock") {
     TimedRun simulation(setup_of(full_queue_job(Overflow::spill)), 1'000'000);
     CHECK(simulation.pipeline.triangle_queue.spilled() > 0);
 }
 
-TEST_CASE("the same queue that may not overflow ends the run with the key's name") {
+TEST_CASE("a full queue that may not overflow ends the run with an error that names the key") {
     const MachineSetup setup = setup_of(full_queue_job(Overflow::error));
     Simulation simulation(setup, 1'000'000, 1'000'000);
     try {
@@ -78,7 +78,7 @@ TEST_CASE("the same queue that may not overflow ends the run with the key's name
     }
 }
 
-TEST_CASE("a full queue, last in first out, with stalls: a deadlock too, not a crash") {
+TEST_CASE("a full queue, last in first out, with random stalls: a deadlock, not a crash") {
     Job job = full_queue_job(Overflow::stall);
     job.hardware.queue_order = QueueOrder::lifo;
     job.hardware.queue_capacity = 1;
@@ -102,7 +102,7 @@ TEST_CASE("a machine that works and decides nothing within the bound is a livelo
 }
 
 // Every item on every channel is stalled for up to a million cycles: slow, but each call makes progress.
-TEST_CASE("a machine that waits for a million cycles is none") {
+TEST_CASE("a machine that waits for a million cycles is not a livelock") {
     Job job = one_quad_job();
     job.timing.stalls = {1, 1000, 1'000'000};
     TimedRun simulation(setup_of(job), 500);
@@ -111,14 +111,14 @@ TEST_CASE("a machine that waits for a million cycles is none") {
 
 // First in first out: all of a generation is decided before any of the next, so the first triangle is lit after 18 * (1
 // + 4 + 16 + 64) passes of 36 cycles.
-TEST_CASE("a triangle decided is progress, though none is lit for long") {
+TEST_CASE("a decided triangle is progress, even if none is lit for a long time") {
     TimedRun simulation(setup_of(full_split_job(3, 4)), 1000);
     CHECK(simulation.cycles() > 1530 * 36);
 }
 
 // Lighting takes 500 cycles per triangle and has places for all that wait for it: most are lit long after the last is
 // decided, and for each, units are called in more than one cycle.
-TEST_CASE("a triangle lit is progress, though none is decided any more") {
+TEST_CASE("a lit triangle is progress, even if no more are decided") {
     MachineSetup setup = setup_of(full_split_job(2, 2));
     setup.design.timing.lighting = {4, 500, 128};
     TimedRun simulation(setup, 100);
@@ -126,7 +126,7 @@ TEST_CASE("a triangle lit is progress, though none is decided any more") {
     CHECK(simulation.cycles() > 127 * 500);
 }
 
-TEST_CASE("the bound on progress does not end a run that just keeps it") {
+TEST_CASE("a run that just meets the bound on progress is not ended") {
     TimedRun simulation(one_triangle(), 46);
 }
 
@@ -145,7 +145,7 @@ struct Wall : sc_core::sc_module, CycleProcess {
 }  // namespace
 
 // Behind a rasteriser that takes only one triangle, units fill up one after another, back to the host.
-TEST_CASE("a rasteriser that takes nothing is a deadlock that begins at Lighting") {
+TEST_CASE("a rasteriser that stops taking triangles causes a deadlock back to the queue") {
     const MachineSetup setup = setup_of(full_split_job(3, 2));
     Pipeline pipeline("tessera", setup.registers, setup.design);
     Host host("host", pipeline, setup.base_triangles, tables_of(setup));

@@ -99,21 +99,24 @@ const CaseTable designs(
         {"final edges, functional", "hardware.final_edges=true mode=functional"},
         {"cheap tests first", "hardware.test_order=cheap_first"},
         {"cheap tests first, functional", "hardware.test_order=cheap_first mode=functional"},
-        {"both", "hardware.test_order=cheap_first hardware.final_edges=true"},
-        {"both, functional", "hardware.test_order=cheap_first hardware.final_edges=true mode=functional"},
-        {"both, three tests units", "hardware.test_order=cheap_first hardware.final_edges=true hardware.tests_units=3"},
-        {"both, last in first out, places for one",
+        {"cheap tests and final edges", "hardware.test_order=cheap_first hardware.final_edges=true"},
+        {"cheap tests and final edges, functional",
+         "hardware.test_order=cheap_first hardware.final_edges=true mode=functional"},
+        {"cheap tests and final edges, three tests units",
+         "hardware.test_order=cheap_first hardware.final_edges=true hardware.tests_units=3"},
+        {"cheap tests and final edges, last in first out, buffers for one item",
          "hardware.test_order=cheap_first hardware.final_edges=true hardware.queue_order=lifo "
          "timing.edges_in_sequence=1 timing.results_buffer=1 timing.pass_or_tessellate_buffer=1"},
-        {"both, a queue of one place that spills",
+        {"cheap tests and final edges, a queue of one place that spills",
          "hardware.test_order=cheap_first hardware.final_edges=true hardware.queue_capacity=1"},
-        {"both, random stalls",
+        {"cheap tests and final edges, random stalls",
          "hardware.test_order=cheap_first hardware.final_edges=true timing.stalls_seed=3 "
          "timing.stalls_per_mille=300 timing.stalls_longest=20"},
-        {"both, Highlight Test and culling",
+        {"cheap tests and final edges, Highlight Test and culling",
          "hardware.test_order=cheap_first hardware.final_edges=true tests.highlight=true hardware.culling=back"},
-        {"both, no Normal Test", "hardware.test_order=cheap_first hardware.final_edges=true tests.normal=false"},
-        {"both, no Summed Height Test",
+        {"cheap tests and final edges, no Normal Test",
+         "hardware.test_order=cheap_first hardware.final_edges=true tests.normal=false"},
+        {"cheap tests and final edges, no Summed Height Test",
          "hardware.test_order=cheap_first hardware.final_edges=true tests.summed_height=false"},
         {"sums over one texel from the map", "hardware.one_texel_from_map=true"},
         {"sums over one texel from the map, functional", "hardware.one_texel_from_map=true mode=functional"},
@@ -123,10 +126,11 @@ const CaseTable designs(
         {"sums over one texel from a slow map, three tests units, random stalls",
          "hardware.one_texel_from_map=true hardware.tests_units=3 timing.displacement_map_latency=30 "
          "timing.stalls_seed=3 timing.stalls_per_mille=300 timing.stalls_longest=20"},
-        {"all of these", "hardware.one_texel_from_map=true hardware.test_order=cheap_first hardware.final_edges=true"},
-        {"all of these, functional",
+        {"all three options",
+         "hardware.one_texel_from_map=true hardware.test_order=cheap_first hardware.final_edges=true"},
+        {"all three options, functional",
          "hardware.one_texel_from_map=true hardware.test_order=cheap_first hardware.final_edges=true mode=functional"},
-        {"all of these, three tests units, random stalls",
+        {"all three options, three tests units, random stalls",
          "hardware.one_texel_from_map=true hardware.test_order=cheap_first hardware.final_edges=true "
          "hardware.tests_units=3 timing.stalls_seed=5 timing.stalls_per_mille=300 timing.stalls_longest=20"},
         {"sums over one texel from the map, no Summed Height Test",
@@ -134,11 +138,11 @@ const CaseTable designs(
         {"all tables behind caches",
          "timing.displacement_map_cache_bytes=4096 timing.normal_map_cache_bytes=4096 "
          "timing.summed_height_table_cache_bytes=8192"},
-        {"all of these, all tables behind caches",
+        {"all three options, all tables behind caches",
          "hardware.one_texel_from_map=true hardware.test_order=cheap_first hardware.final_edges=true "
          "timing.displacement_map_cache_bytes=4096 timing.normal_map_cache_bytes=4096 "
          "timing.summed_height_table_cache_bytes=8192"},
-        {"all of these, all tables behind caches, functional",
+        {"all three options, all tables behind caches, functional",
          "hardware.one_texel_from_map=true hardware.test_order=cheap_first hardware.final_edges=true "
          "timing.displacement_map_cache_bytes=4096 timing.normal_map_cache_bytes=4096 "
          "timing.summed_height_table_cache_bytes=8192 mode=functional"},
@@ -165,7 +169,7 @@ const CaseTable designs(
          "hardware.work=family hardware.test_order=cheap_first hardware.one_texel_from_map=true hardware.edge_lanes=3"},
         {"families, three lanes, functional",
          "hardware.work=family hardware.test_order=cheap_first hardware.one_texel_from_map=true hardware.edge_lanes=3 mode=functional"},
-        {"families, nine lanes, three Normal Tests, last in first out, places for one",
+        {"families, nine lanes, three Normal Tests, last in first out, buffers for one item",
          "hardware.work=family hardware.test_order=cheap_first hardware.one_texel_from_map=true hardware.edge_lanes=9 hardware.normal_tests=3 hardware.queue_order=lifo "
          "timing.edges_in_sequence=1 timing.results_buffer=1 timing.pass_or_tessellate_buffer=1"},
         {"families, two lanes, two Normal Tests, a queue of one place that spills, random stalls",
@@ -221,7 +225,7 @@ const CaseTable designs(
         {"sixteen machines of families, three lanes, all tables behind caches",
          "hardware.machines=16 hardware.design=modern timing.displacement_map_cache_bytes=4096 "
          "timing.normal_map_cache_bytes=4096 timing.summed_height_table_cache_bytes=8192"},
-        {"all of these, a queue of one place that spills",
+        {"all three options, a queue of one place that spills",
          "hardware.one_texel_from_map=true hardware.test_order=cheap_first hardware.final_edges=true "
          "hardware.queue_capacity=1 timing.summed_height_table_banks=8 timing.summed_height_table_interleave=xor "
          "timing.summed_height_table_window=12"},

@@ -67,11 +67,11 @@ const CaseTable cycles(
     {
         // test_one_triangle.cpp: edge 2 starts in the Normal Test in 32, is read in 33 and complete 9 + 1 later, in 43,
         // before the Summed Height Test's 47.
-        Timed{"86 cycles, as without", "", 86},
+        Timed{"86 cycles, as without the test", "", 86},
         // The Summed Height Test is complete in 41, the Normal Test in 43: 43 + 38, plus cycle 0.
-        {"two ports: one cycle more than the 81 without", "timing.summed_height_table_ports=2", 43 + 38 + 1},
+        {"two ports: one cycle more than the 81 without the test", "timing.summed_height_table_ports=2", 43 + 38 + 1},
         // 33 + 9 + 300 = 342.
-        {"300 cycles for it", "timing.highlight_test_latency=300", 342 + 38 + 1},
+        {"a test latency of 300 cycles", "timing.highlight_test_latency=300", 342 + 38 + 1},
     },
     [](const Timed& row) {
         TimedRun simulation(one_triangle(with_settings(with_highlight(one_quad_job()), row.settings)));
@@ -82,7 +82,7 @@ const CaseTable cycles(
 
 // 18 base triangles, each split into four until generation 4 (test_throughput.cpp): bound by the Summed Height Table's
 // 36 cycles per pass; the Highlight Test only asks for edges that split anyway.
-TEST_CASE("Highlight Test: the paper's design is as fast with it") {
+TEST_CASE("Highlight Test: it does not slow down the paper's design") {
     Job job = with_highlight(full_split_job(3, 4));
     job.tests.highlight_normal_threshold = 0;
     TimedRun simulation(setup_of(job));
@@ -122,7 +122,7 @@ TEST_CASE("Highlight Test: registers follow from the light and the camera") {
     CHECK(off.registers.tests.half_vector == std::array<std::int32_t, 3>{});
 }
 
-TEST_CASE("Highlight Test: splits in the highlight, and there only") {
+TEST_CASE("Highlight Test: it splits edges in the highlight, and nowhere else") {
     const MachineSetup with = setup_of(with_highlight(functional_job()));
     const auto cosine = [&](const datapath::Direction& n) {
         const auto& h = with.registers.tests.half_vector;
@@ -144,7 +144,7 @@ TEST_CASE("Highlight Test: splits in the highlight, and there only") {
 }
 
 // The effect: with as many triangles, lighting per vertex is closer to lighting per texel in the highlight.
-TEST_CASE("Highlight Test: per-vertex highlights are better than those of a finer mesh of as many triangles") {
+TEST_CASE("Highlight Test: per-vertex highlights have a smaller error than in a finer mesh of as many triangles") {
     Job job = functional_job();
     const MachineSetup with = setup_of(with_highlight(job));
     const MachineSetup without = setup_of(job);
@@ -171,7 +171,7 @@ TEST_CASE("Highlight Test: per-vertex highlights are better than those of a fine
     CHECK(on.highlight_triangles > 2 * on.other_triangles);
 }
 
-TEST_CASE("per-vertex against per-texel light: a flat mesh has no error, a coarse one that of its middle") {
+TEST_CASE("per-vertex against per-texel light: a flat mesh has no error, one with dark corners the whole light") {
     Job job = functional_job();
     job.map.source = MapSource::constant;
     job.map.width = job.map.height = 32;

@@ -41,7 +41,7 @@ using PassThroughUnits = UnitBehind<DisplaceVertex, PassThrough>;
 
 }  // namespace
 
-TEST_CASE("pass-through alone: each item as it came, three cycles later, one a cycle") {
+TEST_CASE("pass-through alone: items leave unchanged, three cycles later, one per cycle") {
     CycleScheduler clock("clock", sc_core::sc_time(5, sc_core::SC_NS));
     const datapath::Registers registers{};
     Design design;
@@ -65,7 +65,7 @@ TEST_CASE("pass-through alone: each item as it came, three cycles later, one a c
 
 // test_one_triangle.cpp's derivation with D + 3 instead of D: V = 34, W = S = 35, J = 35 + 11 + 1 + 3 = 50; the normals
 // pass it once more: 38 + 3. Cycle 91. Nine parts, three cycles each.
-TEST_CASE("pass-through: one triangle, 92 cycles instead of 86") {
+TEST_CASE("pass-through: one triangle takes 92 cycles instead of 86") {
     const MachineSetup setup = one_triangle();
     PassThroughUnits units;
     NamedMachine own("own", setup);
@@ -81,7 +81,7 @@ TEST_CASE("pass-through: one triangle, 92 cycles instead of 86") {
 
 // Bound by the Summed Height Table (test_throughput.cpp): 5 + 3 + 36 a pass + 9. Its only pause, while the first
 // triangle's third edge waits for Transform, is 6 instead of 3. The last pass needs no normals: no more at the end.
-TEST_CASE("pass-through: the default job, three cycles more") {
+TEST_CASE("pass-through: the default job takes three more cycles") {
     const MachineSetup setup = setup_of(timed_job());
     PassThroughUnits units;
     NamedMachine machine("machine", setup, &units);

@@ -77,7 +77,7 @@ const CaseTable derived(
         // then 1 + 1 + 1 + 1 + 2 + 1 + 6 + 20 + 1 + 4 = 38: cycle 85.
         Row{"the paper's design: 86 cycles", "", 86},
         // V = 12, W = 13, S = 29, J = 29 + 11 + 1 + 3 = 44, then 19: the tests take longer than Transform.
-        {"Transform of 1 cycle: the tests are what takes time", "timing.transform_latency=1", 64},
+        {"Transform of 1 cycle: the tests finish last", "timing.transform_latency=1", 64},
         // V = 511, W = 512, J = 512 + 11 + 1 + 3 = 527, then 518.
         {"Transform of 500 cycles: edge 2 waits for the screen positions", "timing.transform_latency=500",
          527 + 518 + 1},
@@ -88,13 +88,13 @@ const CaseTable derived(
         // nothing: 38.
         {"a displacement map of latency 100", "timing.displacement_map_latency=100", 146 + 38 + 1},
         // A = 1 + 2 + 1 + 200 = 204, after V = 31: W = 205, edge 2 starts in 206, J = 206 + 200 + 9 = 415.
-        {"a normal map of latency 200: the Normal Test is the last", "timing.normal_map_latency=200", 415 + 38 + 1},
+        {"a normal map of latency 200: the Normal Test finishes last", "timing.normal_map_latency=200", 415 + 38 + 1},
         // J = 32 + 1 + 300 = 333.
         {"a Normal Test of 300 cycles", "timing.normal_test_latency=300", 333 + 38 + 1},
         // Edge 2 starts in V + 2 = 33, J = 103.
         {"a View Test of 70 cycles", "timing.view_test_latency=70", 103 + 38 + 1},
         // Two ports: 6 cycles an edge; S = 32, J = 32 + 5 + 1 + 3 = 41, before the Normal Test's 42 = 32 + 1 + 9.
-        {"two ports on the Summed Height Table: the Normal Test is the last", "timing.summed_height_table_ports=2",
+        {"two ports on the Summed Height Table: the Normal Test finishes last", "timing.summed_height_table_ports=2",
          42 + 38 + 1},
         {"four ports on the Summed Height Table: no faster than two", "timing.summed_height_table_ports=4",
          42 + 38 + 1},
@@ -222,7 +222,7 @@ TEST_CASE("the paper's design: latency, interval and buffer of every unit and me
 // W = 68 (edge 2 waits at the end of Calculate New U), S = 68,
 // J = max(71, 68 + 4 + 13, 68 + 11 + 9 + 17, 70 + 6) = 105,
 // then 8 + 10 + 12 + 3 + 2 + 5 + 11 + 40 + 8 + 14 = 113.
-TEST_CASE("one triangle, every latency another") {
+TEST_CASE("one triangle, a different latency in every unit") {
     TimedRun simulation(one_triangle(with_settings(
         one_quad_job(),
         "timing.get_triangle_latency=3 timing.calculate_new_p_latency=5 timing.displacement_map_latency=7 "
@@ -253,7 +253,7 @@ TEST_CASE("one triangle, every latency another") {
 }
 
 // Normals only take part in the second round: three parts, read nothing, and skip the tests. Six parts in the first.
-TEST_CASE("one triangle: its parts and reads") {
+TEST_CASE("one triangle: numbers of parts and reads") {
     TimedRun simulation(one_triangle());
     const Pipeline& p = simulation.pipeline;
     CHECK(p.get_triangle.parts_sent() == 9);
@@ -275,7 +275,7 @@ TEST_CASE("one triangle: its parts and reads") {
 }
 
 // The cycles of a triangle's stages must not depend on the clock's period.
-TEST_CASE("one triangle: cycles do not depend on the clock's period, time does") {
+TEST_CASE("one triangle: the clock's period changes the time but not the cycles") {
     TimedRun simulation(one_triangle(with_settings(one_quad_job(), "timing.clock_period=1234")));
     CHECK(simulation.cycles() == 86);
     CHECK(sc_core::sc_time_stamp().value() == 85 * 1234);

@@ -72,18 +72,18 @@ const CaseTable designs(
         {"ranks of 16 bits", "formats.rank_bits=16"},
         {"bounds alone", "formats.rank_bits=0 formats.bound_bits=8"},
         {"ranks and bounds", "formats.rank_bits=12 formats.bound_bits=10"},
-        {"all edges that split cut at once", "hardware.triangulation=shorter"},
-        {"beside the other tests", "tests.normal=true tests.view=true tests.highlight=true hardware.culling=back"},
-        {"the Generation Test in the way", "tests.generation_limit=5"},
+        {"all splitting edges cut at once", "hardware.triangulation=shorter"},
+        {"alongside the other tests", "tests.normal=true tests.view=true tests.highlight=true hardware.culling=back"},
+        {"limited by the Generation Test", "tests.generation_limit=5"},
         {"three tests units, random stalls",
          "hardware.tests_units=3 timing.stalls_seed=3 timing.stalls_per_mille=300 timing.stalls_longest=20"},
         {"final edges", "hardware.final_edges=true"},
         {"cheap tests first, final edges", "hardware.test_order=cheap_first hardware.final_edges=true"},
-        {"cheap tests first, final edges, beside the other tests, random stalls",
+        {"cheap tests first, final edges, alongside the other tests, random stalls",
          "hardware.test_order=cheap_first hardware.final_edges=true tests.normal=true tests.view=true "
          "timing.stalls_seed=5 timing.stalls_per_mille=300 timing.stalls_longest=20"},
         {"cheap tests first, functional", "hardware.test_order=cheap_first mode=functional"},
-        {"cheap tests first, places for one",
+        {"cheap tests first, buffers for one edge",
          "hardware.test_order=cheap_first timing.edges_in_sequence=1 timing.results_buffer=1"},
         {"a slow table behind a cache",
          "timing.rank_table_cache_bytes=256 timing.rank_table_latency=9 timing.rank_test_latency=7 "
@@ -91,32 +91,31 @@ const CaseTable designs(
         {"families", "hardware.work=family"},
         {"families, functional, ranks and bounds", "hardware.work=family mode=functional formats.bound_bits=8"},
         {"the modern design", "hardware.design=modern"},
-        {"the modern design, all edges that split cut at once",
-         "hardware.design=modern hardware.triangulation=shorter"},
-        {"the modern design, beside the other tests",
+        {"the modern design, all splitting edges cut at once", "hardware.design=modern hardware.triangulation=shorter"},
+        {"the modern design, alongside the other tests",
          "hardware.design=modern tests.normal=true tests.view=true tests.highlight=true"},
         {"the modern design, a queue of one place that spills, random stalls",
          "hardware.design=modern hardware.queue_capacity=1 timing.stalls_seed=3 timing.stalls_per_mille=300 "
          "timing.stalls_longest=20"},
         {"three modern machines", "hardware.design=modern hardware.machines=3"},
-        {"as the viewer sees it", "hardware.test_order=cheap_first tests.rank_view=per_point tests.rank_threshold=2"},
-        {"as the viewer sees it, functional, entries of 6 bits",
+        {"view-dependent", "hardware.test_order=cheap_first tests.rank_view=per_point tests.rank_threshold=2"},
+        {"view-dependent, functional, entries of 6 bits",
          "hardware.test_order=cheap_first mode=functional tests.rank_view=per_point tests.rank_threshold=2 "
          "formats.rank_bits=6"},
-        {"as the viewer sees it per pixel, final edges, beside the other tests, random stalls",
+        {"view-dependent per pixel, final edges, alongside the other tests, random stalls",
          "hardware.test_order=cheap_first hardware.final_edges=true tests.normal=true tests.view=true "
          "tests.rank_view=per_pixel tests.rank_threshold=6 timing.stalls_seed=5 timing.stalls_per_mille=300 "
          "timing.stalls_longest=20"},
-        {"bounds as the viewer sees them",
+        {"view-dependent bounds",
          "hardware.test_order=cheap_first tests.rank_view=per_point tests.bound_threshold=1 formats.rank_bits=0 "
          "formats.bound_bits=12"},
-        {"ranks and bounds as the viewer sees them, three tests units, from within",
+        {"view-dependent ranks and bounds, three tests units, eye inside the scene",
          "hardware.test_order=cheap_first hardware.tests_units=3 tests.rank_view=per_pixel tests.rank_threshold=50 "
          "tests.bound_threshold=20 formats.bound_bits=8 camera.eye=[0.1,0.2,0.15] camera.target=[0.5,0.4,0]"},
-        {"the modern design, ranks and bounds as the viewer sees them",
+        {"the modern design, view-dependent ranks and bounds",
          "hardware.design=modern tests.rank_view=per_point tests.rank_threshold=2 tests.bound_threshold=1 "
          "formats.bound_bits=16"},
-        {"the modern design as the viewer sees it, functional, narrow positions",
+        {"the modern design, view-dependent, functional, narrow positions",
          "hardware.design=modern mode=functional tests.rank_view=per_point tests.rank_threshold=2 "
          "tests.bound_threshold=2 formats.bound_bits=8 formats.position_bits=20 formats.position_fraction=6"},
     },
@@ -126,27 +125,27 @@ const CaseTable random_tables(
     "a Rank Table of random bits: ",
     {
         Row{"the paper's design", "formats.bound_bits=6"},
-        {"all edges that split cut at once", "hardware.triangulation=shorter"},
+        {"all splitting edges cut at once", "hardware.triangulation=shorter"},
         {"cheap tests first, final edges", "hardware.test_order=cheap_first hardware.final_edges=true"},
         {"the modern design", "hardware.design=modern formats.rank_bits=12 formats.bound_bits=12"},
         {"the modern design, functional", "hardware.design=modern mode=functional"},
-        {"as the viewer sees it",
+        {"view-dependent",
          "hardware.test_order=cheap_first tests.rank_view=per_pixel formats.rank_bits=9 formats.bound_bits=7"},
-        {"the modern design as the viewer sees it",
+        {"the modern design with view-dependent bounds",
          "hardware.design=modern tests.rank_view=per_point formats.rank_bits=0 formats.bound_bits=12"},
     },
     [](const Row& row) { check_design(with_random_ranks(ranked(row.settings), 7), 500); });
 
 }  // namespace
 
-TEST_CASE("a Rank Table on a base mesh off the lattice splits nothing that it cannot", "[rank]") {
+TEST_CASE("a Rank Table splits and reads nothing on a base mesh off the lattice", "[rank]") {
     // Corners at whole multiples of 11 texels: no edge is of even length.
     const CheckedRun run(ranked("mesh.source=plane mesh.columns=4 mesh.rows=4 map.width=44 map.height=44"));
     CHECK(run.counts.edges_split == 0);
     CHECK(Totals(run.simulation).height_table_reads == 0);
 }
 
-TEST_CASE("the Rank Test's threshold is the only number in its decision", "[rank]") {
+TEST_CASE("a Rank Test whose threshold is the greatest rank splits nothing", "[rank]") {
     MachineSetup setup = ranked("mode=functional");
     setup.registers.tests.rank_threshold =
         *std::max_element(setup.rank_tables.rank.begin(), setup.rank_tables.rank.end());

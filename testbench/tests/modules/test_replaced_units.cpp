@@ -345,31 +345,29 @@ void expect_error_through_packed_streams(Mode mode) {
 
 }  // namespace
 
-TEST_CASE("replaced unit: another Summed Height Test, timed mode") {
+TEST_CASE("replaced unit: a modified Summed Height Test, timed mode") {
     expect_halved_test(timed_job());
 }
 
-TEST_CASE("replaced unit: another Summed Height Test, functional mode") {
+TEST_CASE("replaced unit: a modified Summed Height Test, functional mode") {
     expect_halved_test(in_mode(Mode::functional));
 }
 
-TEST_CASE("replaced unit: another Summed Height Test in each of three Tessellation Tests units") {
+TEST_CASE("replaced unit: a modified Summed Height Test in each of three Tessellation Tests units") {
     Job job = timed_job();
     job.hardware.tests_units = 3;
     expect_halved_test(job);
 }
 
-TEST_CASE("replaced unit: Displace Vertex behind its packed items, the same mesh and the same cycles") {
+TEST_CASE("replaced unit: Displace Vertex on packed items, the same mesh and the same cycles") {
     expect_same_as_packed(setup_of(timed_job()));
 }
 
-TEST_CASE("replaced unit: Displace Vertex behind its packed items, functional mode") {
+TEST_CASE("replaced unit: Displace Vertex on packed items, functional mode") {
     expect_same_as_packed(setup_of(in_mode(Mode::functional)));
 }
 
-TEST_CASE(
-    "replaced unit: Displace Vertex behind its packed items, other widths, a slow map, held back by "
-    "Transform") {
+TEST_CASE("replaced unit: Displace Vertex on packed items, other widths, a slow map, blocked by Transform") {
     Job job = full_split_job(2, 3);
     job.formats.position_bits = 27;
     job.formats.normal_bits = 13;
@@ -397,7 +395,7 @@ TEST_CASE("packed streams: a value beyond its field is an error that names the s
     expect_error_through_packed_streams(Mode::functional);
 }
 
-TEST_CASE("packed streams: without them the same value passes") {
+TEST_CASE("unpacked streams: a value beyond its field passes") {
     std::array<MachineSetup, 2> setups{setup_of(packed_streams_job(Mode::timed)),
                                        setup_of(packed_streams_job(Mode::functional))};
     for (MachineSetup& setup : setups)
@@ -411,7 +409,7 @@ TEST_CASE("packed streams: without them the same value passes") {
         expect_mesh(*machine, bare_mesh(setups[0]));
 }
 
-TEST_CASE("replaced unit: the same in another context, with other registers") {
+TEST_CASE("replaced unit: a standard unit, with registers of its own") {
     const MachineSetup setup = setup_of(in_mode(Mode::functional));
     const MachineSetup equal = equal_to_halved(setup);
     OtherThreshold units(equal.registers);
@@ -420,7 +418,7 @@ TEST_CASE("replaced unit: the same in another context, with other registers") {
     expect_mesh(machine, bare_mesh(equal));
 }
 
-TEST_CASE("replaced unit: the same in another context, stalls for it alone or another latency") {
+TEST_CASE("replaced unit: a standard unit, with stalls or a latency of its own") {
     const MachineSetup setup = setup_of(full_split_job(2, 3));
     StalledHeights stalled_units;
     SlowCalculateNewP slow_units;
@@ -435,7 +433,7 @@ TEST_CASE("replaced unit: the same in another context, stalls for it alone or an
     CHECK(slow.cycles() > own.cycles());
 }
 
-TEST_CASE("a unit interposed on a stream: half the light, as many cycles more as its latency") {
+TEST_CASE("a unit interposed on a stream: light is halved, the run is longer by its latency") {
     const MachineSetup timed_setup = setup_of(full_split_job(2, 2));
     const MachineSetup functional_setup = setup_of(in_mode(Mode::functional, full_split_job(2, 2)));
     HalfLitUnits timed_units, functional_units;

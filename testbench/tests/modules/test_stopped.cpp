@@ -105,9 +105,9 @@ struct Row {
 };
 
 const CaseTable stopped(
-    "stopped anywhere: ",
+    "contents of units described in every cycle: ",
     {
-        Row{"the paper's design, items stalled at random",
+        Row{"the paper's design, random stalls",
             "timing.stalls_seed=3 timing.stalls_per_mille=300 timing.stalls_longest=9 "
             "hardware.queue_capacity=2",
             {{"get_triangle", "not all of it sent"},
@@ -119,7 +119,7 @@ const CaseTable stopped(
              {"off_chip_memory", "one waiting at the input"}}},
         // A triangle's nine edges take some sixty cycles in the tests: each of the last three units then waits for the
         // next one.
-        {"every unit slower to begin than to end, a queue of three that spills",
+        {"every interval longer than the latency, a queue of three that spills",
          every_unit("latency", 1) + every_unit("interval", 7) + every_unit("buffer", 1) +
              "hardware.queue_capacity=3 hardware.queue_order=lifo timing.pass_or_tessellate_interval=100 "
              "timing.pass_or_tessellate_buffer=8 timing.tessellation_interval=60 "
@@ -132,7 +132,7 @@ const CaseTable stopped(
          "hardware.tests_units=3 hardware.queue_watermark=1000 timing.summed_height_table_ports=12 "
          "timing.transform_latency=300 timing.transform_interval=90",
          {{"pass_or_tessellate", "waiting for Transform"}, {"get_triangle", "a host triangle"}}},
-        {"a queue without bound that takes a triangle every forty cycles",
+        {"an unbounded queue that takes a triangle every forty cycles",
          "timing.triangle_queue_latency=50 timing.triangle_queue_interval=40",
          {{"triangle_queue", "of them on the way out"}, {"triangle_queue", "no place for the next"}}},
     },
@@ -146,18 +146,18 @@ const CaseTable stopped(
 
 }  // namespace
 
-TEST_CASE("drained: timed, notified once a frame, when all has gone out") {
+TEST_CASE("drained: in timed mode, notified once per frame, when the machine is empty") {
     CHECK(expect_drained_when_empty(full_split_job(2, 2)) == 2);
 }
 
 // The host may wait between two base triangles while the machine is empty.
-TEST_CASE("drained: functional, notified when all that came in has gone out") {
+TEST_CASE("drained: in functional mode, notified when the machine is empty") {
     Job job = full_split_job(2, 2);
     job.mode = Mode::functional;
     CHECK(expect_drained_when_empty(job) >= 2);
 }
 
-TEST_CASE("drained: a machine in a deadlock is not") {
+TEST_CASE("drained: not notified in a deadlock") {
     Job job = timed_job();
     job.hardware.queue_capacity = 8;
     job.hardware.queue_overflow = Overflow::stall;
@@ -168,7 +168,7 @@ TEST_CASE("drained: a machine in a deadlock is not") {
     CHECK(watch.notified == 0);
 }
 
-TEST_CASE("a design whose parts disagree is refused") {
+TEST_CASE("an inconsistent design is refused") {
     MachineSetup setup = setup_of(one_quad_job());
     const auto message = [&] {
         try {

@@ -97,34 +97,34 @@ const CaseTable rates(
               fill + 15 + 18 * passes + drain, fill + 15 + 18 * passes + drain, "summed_height_table", 18 * passes},
         // 9 cycles per pass: still more than a pass has parts (at most 6). A base triangle's 31 cycles to the screen
         // are now longer than the work on the ones before it, so each of 18 may delay the table by at most that.
-        {"four ports on the Summed Height Table: 9 cycles a pass, still bound by it",
+        {"four ports on the Summed Height Table: 9 cycles a pass, still the bottleneck",
          "timing.summed_height_table_ports=4", fill + 9 * passes + drain,
          fill + 9 * passes + drain + base* until_on_screen, "summed_height_table", 9 * passes},
         // 64 ports: a rectangle takes one cycle, and the limit is one part per cycle, from Get Triangle and through
         // Calculate New P, Displace Vertex and Transform alike.
-        {"with ports to spare a part a cycle is what binds", "timing.summed_height_table_ports=64", a_part_a_cycle,
-         a_part_a_cycle + base* until_on_screen, "get_triangle", parts},
+        {"ample ports on the Summed Height Table: limited to one part per cycle", "timing.summed_height_table_ports=64",
+         a_part_a_cycle, a_part_a_cycle + base* until_on_screen, "get_triangle", parts},
         // Four cycles per edge, and for each of a base triangle's three vertices, on both maps. The Summed Height Test,
         // with 64 ports, takes one.
-        {"a bilinear filter, ports to spare on the Summed Height Table: 12 cycles a pass",
+        {"a bilinear filter, ample ports on the Summed Height Table: 12 cycles a pass",
          "hardware.displacement_filter=bilinear timing.summed_height_table_ports=64", 4 * (3 * passes + 3 * base),
          4 * (3 * passes + 3 * base) + 100 + base* until_on_screen, "normal_map", 4 * (3 * passes + 3 * base)},
         // The Normal Test asks for every split that the Generation Test allows: the table is hardly read.
-        {"cheap tests first, one port: a part a cycle is what binds", "hardware.test_order=cheap_first", a_part_a_cycle,
-         a_part_a_cycle + base* until_on_screen, "get_triangle", parts},
+        {"cheap tests first, one port: limited to one part per cycle", "hardware.test_order=cheap_first",
+         a_part_a_cycle, a_part_a_cycle + base* until_on_screen, "get_triangle", parts},
         // Edges of eight and four texels read the table. Those of the 18 * (16 + 64 + 256) passes below, of two texels
         // and less, read three codes each, through ports that Displace Vertex does not use.
         {"a Curvature Test, most edges short: 9 cycles a pass", short_edges, 9 * short_passes,
          9 * short_passes + 3 * (passes - short_passes) + 100 + base* until_on_screen, "displacement_map_for_tests",
          9 * short_passes},
         // They share the one port: the only gain is the first triangle's three cycles and one vertex.
-        {"three tests units on one port: 36 cycles a pass as before", "hardware.tests_units=3",
+        {"three tests units on one port: still 36 cycles a pass", "hardware.tests_units=3",
          fill_of_three + 36 * passes + drain, fill_of_three + 36 * passes + drain, "summed_height_table", 36 * passes},
         {"three tests units on four ports: 9 cycles a pass",
          "hardware.tests_units=3 timing.summed_height_table_ports=4", fill_of_three + 9 * passes + drain,
          fill_of_three + 9 * passes + drain + base* until_on_screen, "summed_height_table", 9 * passes},
         // With four ports the table needs 9 of the 24 or more cycles that three edges take here.
-        {"Transform every 8 cycles binds: 8 cycles a part",
+        {"Transform every 8 cycles is the bottleneck: 8 cycles a part",
          "timing.summed_height_table_ports=4 timing.transform_interval=8", transform_every_8, transform_every_8,
          "transform", 8 * parts},
         {"two Transform pipelines every 8 cycles: 4 cycles a part",
@@ -132,14 +132,14 @@ const CaseTable rates(
          two_every_8, "transform", 4 * parts},
         // 6120 children, one every 20 cycles, also from the last of one pass to the first of the next. When the last is
         // made, the finished ones may still wait for the table, nine cycles each.
-        {"Tessellation every 20 cycles binds where the tests take less",
+        {"Tessellation every 20 cycles is the bottleneck if the tests take less",
          "timing.summed_height_table_ports=4 timing.tessellation_interval=20", 20 * (passes - base - 1),
          20 * (passes - base) + 9 * finished + 500, "tessellation", 20 * (passes - base), true},
         // One pass at a time: a latency of 300 before its first child, and the other three in the cycles after it.
-        {"Tessellation of latency 300 binds: 303 cycles a split",
+        {"Tessellation of latency 300 is the bottleneck: 303 cycles a split",
          "timing.summed_height_table_ports=4 timing.tessellation_latency=300", 303 * splits,
          303 * splits + 9 * finished + 500, "tessellation", 303 * splits, true},
-        {"Get Triangle every 100 cycles binds: 100 cycles a part", "timing.get_triangle_interval=100",
+        {"Get Triangle every 100 cycles is the bottleneck: 100 cycles a part", "timing.get_triangle_interval=100",
          100 * (parts - 1), 100 * parts + 1000, "get_triangle", 100 * parts, true},
     },
     [](const Bound& row) {
@@ -184,7 +184,7 @@ TEST_CASE("half donut, the paper's design: 36 cycles a pass") {
     CHECK(simulation.cycles() == fill + 3 + 36 * its_passes + drain);
 }
 
-TEST_CASE("two machines of the paper's design: half the passes each, in half the cycles") {
+TEST_CASE("two machines of the paper's design: each does half the passes, in half the cycles") {
     TimedRun simulation(full_split("hardware.machines=2"));
     REQUIRE(simulation.machines.size() == 2);
     for (const auto& machine : simulation.machines) {
@@ -206,20 +206,20 @@ TEST_CASE("two machines of the paper's design: half the passes each, in half the
 
 // Four banks instead: the corners' banks are arbitrary, so no better than four ports, and with one port each no worse
 // than one.
-TEST_CASE("four banks of the Summed Height Table are between one port and four") {
+TEST_CASE("four banks of the Summed Height Table are faster than one port and slower than four") {
     FullSplitRun simulation("timing.summed_height_table_banks=4");
     CHECK(simulation.cycles() > fill + 9 * passes + drain);
     CHECK(simulation.cycles() < fill + 3 + 36 * passes + drain);
 }
 
 // Without conflicts eight banks would read an edge's 12 entries in 1.5 cycles, a pass's in 4.5; four ports take 9.
-TEST_CASE("eight banks entry by entry: more than eight cycles a pass") {
+TEST_CASE("eight banks interleaved by entry: more than eight cycles a pass") {
     FullSplitRun simulation("timing.summed_height_table_banks=8");
     CHECK(simulation.cycles() > 8 * passes);
     CHECK(simulation.cycles() < 9 * passes);
 }
 
-TEST_CASE("eight exclusive-or banks, the rectangles of four edges at a time: less than seven cycles a pass") {
+TEST_CASE("eight exclusive-or banks, a window of four edges: less than seven cycles a pass") {
     FullSplitRun simulation(
         "timing.summed_height_table_banks=8 timing.summed_height_table_interleave=xor "
         "timing.summed_height_table_window=12");
@@ -227,14 +227,14 @@ TEST_CASE("eight exclusive-or banks, the rectangles of four edges at a time: les
     CHECK(simulation.cycles() < 7 * passes);
 }
 
-TEST_CASE("Get Triangle of latency 200 binds: 200 cycles a pass") {
+TEST_CASE("Get Triangle of latency 200 is the bottleneck: 200 cycles a pass") {
     FullSplitRun simulation("timing.get_triangle_latency=200");
     CHECK(simulation.cycles() >= 200 * passes);
     require_sole_bottleneck(simulation, &simulation.pipeline.get_triangle);
 }
 
 // Eight triangles may be in flight at the join, so at most one per 400 / 8 cycles, where the tests take nine.
-TEST_CASE("a Transform of latency 400 is what the join waits for") {
+TEST_CASE("the join waits for a Transform of latency 400") {
     FullSplitRun simulation("timing.summed_height_table_ports=4 timing.transform_latency=400");
     const Pipeline& p = simulation.pipeline;
     std::uint64_t for_transform = 0;
@@ -245,7 +245,7 @@ TEST_CASE("a Transform of latency 400 is what the join waits for") {
 
 // With as many banks as a row has entries, the corners of a rectangle in one column are in one bank: it takes two
 // cycles, and the next one waits if it needs either bank, while nearly all banks idle.
-TEST_CASE("banks in conflict are a bottleneck though their ports idle") {
+TEST_CASE("bank conflicts are a bottleneck even if most ports are idle") {
     MachineSetup setup = full_split();
     setup.design.timing.summed_height_table.banks = setup.registers.height_table.columns;
     FullSplitRun simulation(setup);
@@ -256,7 +256,7 @@ TEST_CASE("banks in conflict are a bottleneck though their ports idle") {
     require_sole_bottleneck(simulation, &table);
 }
 
-TEST_CASE("an interval that lasts is no lack of work") {
+TEST_CASE("a unit that waits for its long interval counts as the bottleneck") {
     FullSplitRun simulation(
         "timing.displace_vertex_latency=1 timing.displace_vertex_interval=100 "
         "timing.pass_or_tessellate_interval=50");
@@ -289,7 +289,7 @@ TEST_CASE("mean occupancy is throughput times latency in units that are never bl
     expect(p.normal_map, edges + vertices);
 }
 
-TEST_CASE("a second frame takes the same cycles again") {
+TEST_CASE("a second frame takes the same number of cycles") {
     FullSplitRun simulation;
     const std::uint64_t first = simulation.cycles();
     simulation.host.send_again();

@@ -49,7 +49,7 @@ MachineSetup full_queue_setup(const std::string& overflow) {
 
 }  // namespace
 
-TEST_CASE("two machines: a timed one of 5 ns, and a functional one") {
+TEST_CASE("two machines: one timed with 5 ns, one functional") {
     const MachineSetup timed_setup = setup_of(timed_job());
     const MachineSetup functional_setup =
         setup_of(with_settings({}, "mode=functional hardware.tests_units=3 timing.clock_period=3200"));
@@ -68,7 +68,7 @@ TEST_CASE("two machines: a timed one of 5 ns, and a functional one") {
     CHECK(functional.drained.back() != timed.drained.back());
 }
 
-TEST_CASE("two machines: timed ones of 5 ns and of 3.2 ns with three Tessellation Tests units") {
+TEST_CASE("two machines: one with 5 ns and one with 3.2 ns and three Tessellation Tests units") {
     const MachineSetup slow_setup = setup_of(timed_job());
     const MachineSetup fast_setup = setup_of(three_tests_units_job());
     const AloneResult alone = run_alone(fast_setup);
@@ -88,7 +88,7 @@ TEST_CASE("two machines: timed ones of 5 ns and of 3.2 ns with three Tessellatio
     CHECK(fast.drained[0] < slow.drained[0]);
 }
 
-TEST_CASE("two machines: one whose queue overflows halts alone, one whose queue stalls waits alone") {
+TEST_CASE("two machines: a queue that overflows, or stalls, stops only its own machine") {
     const MachineSetup overflow_setup = full_queue_setup("error");
     const MachineSetup stall_setup = full_queue_setup("stall");
     const MachineSetup sound_setup = setup_of(three_tests_units_job());
@@ -113,7 +113,7 @@ TEST_CASE("two machines: one whose queue overflows halts alone, one whose queue 
     expect_drained_in_last_cycle(sound);
 }
 
-TEST_CASE("two machines: their cycles begin with the rising edges of clocks of the platform") {
+TEST_CASE("two machines: cycles begin at the rising edges of the platform's clocks") {
     MachineSetup first_setup = setup_of(timed_job()), second_setup = first_setup;
     const sc_core::sc_clock rises("rises", 3, sc_core::SC_NS, 0.5, 1, sc_core::SC_NS, true);
     const sc_core::sc_clock falls("falls", 7, sc_core::SC_NS, 0.3, 11, sc_core::SC_NS, false);

@@ -106,7 +106,7 @@ struct Platform : sc_core::sc_module {
 
 }  // namespace
 
-TEST_CASE("without presets the parameters give the design they were given") {
+TEST_CASE("without presets the parameters return the initial design") {
     CHECK(values_of(design_of({})) == values_of({}));
     std::map<std::string, std::string> others;
     for (const auto& [name, value] : values_of({})) {
@@ -118,7 +118,7 @@ TEST_CASE("without presets the parameters give the design they were given") {
     CHECK(values_of(design_of({}, other)) == others);
 }
 
-TEST_CASE("each preset, up to both ends of its range, sets its own member and no other") {
+TEST_CASE("each preset, at both ends of its range, sets its own member and no other") {
     const std::map<std::string, std::string> defaults = values_of({});
     CHECK(defaults.size() > 80);
     for (const auto& [name, value] : defaults) {
@@ -132,7 +132,7 @@ TEST_CASE("each preset, up to both ends of its range, sets its own member and no
     }
 }
 
-TEST_CASE("parameters are named and described as a job's keys, and cannot be changed") {
+TEST_CASE("parameters have the names and descriptions of job keys, and cannot be changed") {
     global_broker();
     const DesignParameters parameters("described");
     std::map<std::string, std::string> expected = values_of({});
@@ -151,7 +151,7 @@ TEST_CASE("parameters are named and described as a job's keys, and cannot be cha
     CHECK(expected.empty());
 }
 
-TEST_CASE("a preset that a parameter cannot have is refused by name, with what it may be") {
+TEST_CASE("an invalid preset is refused with its name, and the valid values") {
     for (const auto& [name, value] : values_of({})) {
         const tessera::Key& key = *find_key(name);
         const auto [first, last] = ends_of(key);
@@ -171,7 +171,7 @@ TEST_CASE("a preset that a parameter cannot have is refused by name, with what i
     CHECK_THAT(error_of("hardware.tests_units", "2"), Contains(".hardware.tests_units = 2 cannot be: it is 1 or 3"));
 }
 
-TEST_CASE("a mistyped preset is refused with the nearest name, and one of another prefix is not") {
+TEST_CASE("a mistyped preset is refused with the nearest name, and one with another prefix is ignored") {
     const auto refused = [](const std::string& mistyped, const std::string& nearest) {
         INFO(mistyped);
         const std::string error = error_of(mistyped, "9");
@@ -189,7 +189,7 @@ TEST_CASE("a mistyped preset is refused with the nearest name, and one of anothe
     CHECK(DesignParameters("device").design().timing.normal_test.latency == 19);
 }
 
-TEST_CASE("within a module the parameters have its name and its broker") {
+TEST_CASE("parameters within a module use its name and its broker") {
     global_broker();
     const Platform platform("platform");
     CHECK(platform.parameters->design().timing.lighting.latency == 7);
@@ -197,7 +197,7 @@ TEST_CASE("within a module the parameters have its name and its broker") {
     CHECK_FALSE(global_broker().get_param_handle("platform.device.mode").is_valid());
 }
 
-TEST_CASE("a device has the name of its parameters") {
+TEST_CASE("a device and its parameters may have the same name") {
     global_broker();
     const DesignParameters parameters("beside");
     DeviceDesign design;
@@ -206,7 +206,7 @@ TEST_CASE("a device has the name of its parameters") {
     CHECK(device.name() == std::string("beside"));
 }
 
-TEST_CASE("a timed machine from presets takes the cycles of one whose design was set by hand") {
+TEST_CASE("a timed machine configured by presets takes the same cycles as one configured in code") {
     MachineSetup by_hand = one_triangle();
     by_hand.design.timing.transform.latency = 1;
     by_hand.design.timing.summed_height_table.ports = 2;

@@ -110,7 +110,7 @@ void each_coordinate(const TestMap& map, const Formats& formats, Check check) {
 
 }  // namespace
 
-TEST_CASE("bilinear: a code is the exact one, rounded once, at every coordinate of narrow formats") {
+TEST_CASE("bilinear: a code is the exact value, rounded once, at every coordinate of narrow formats") {
     Random random(3);
     for (int fraction = 0; fraction <= 5; ++fraction)
         for (const int bits : {1, 3, 8, 16}) {
@@ -134,7 +134,7 @@ TEST_CASE("bilinear: a code is the exact one, rounded once, at every coordinate 
         }
 }
 
-TEST_CASE("bilinear: at a texel's centre its code, between equal texels theirs") {
+TEST_CASE("bilinear: a texel's centre has its code, equal texels have theirs everywhere") {
     Random random(4);
     for (int fraction = 1; fraction <= 5; ++fraction) {
         const Formats formats = formats_of(2, fraction, 7);
@@ -156,7 +156,7 @@ TEST_CASE("bilinear: at a texel's centre its code, between equal texels theirs")
     }
 }
 
-TEST_CASE("bilinear: a mirrored map mirrors its codes, an exchange of the axes changes none") {
+TEST_CASE("bilinear: mirroring the map mirrors the codes, exchanging the axes changes none") {
     Random random(5);
     for (int fraction = 0; fraction <= 4; ++fraction) {
         const Formats formats = formats_of(2, fraction, 9);
@@ -176,7 +176,7 @@ TEST_CASE("bilinear: a mirrored map mirrors its codes, an exchange of the axes c
     }
 }
 
-TEST_CASE("bilinear: exact on wide formats, to the last border, many periods away") {
+TEST_CASE("bilinear: codes are exact in wide formats, up to the last border, many periods away") {
     Random random(6);
     for (int k = 0; k < 20'000; ++k) {
         const int fraction = random.integer32(0, 12);
@@ -196,7 +196,7 @@ TEST_CASE("bilinear: exact on wide formats, to the last border, many periods awa
     }
 }
 
-TEST_CASE("bilinear: normals component by component, rounded to their format, as long as their texels' at most") {
+TEST_CASE("bilinear: normals are interpolated by component, rounded to their format") {
     Random random(7);
     for (const int bits : {6, 9, 16, 18})
         for (int fraction = 0; fraction <= 4; ++fraction) {
@@ -226,7 +226,7 @@ TEST_CASE("bilinear: normals component by component, rounded to their format, as
         }
 }
 
-TEST_CASE("bilinear: by hand") {
+TEST_CASE("bilinear: addresses and codes computed by hand") {
     const Formats formats = formats_of(12, 12, 16);
     const TableLayout table{1000, 4, 2, 2};
     const auto addresses = [&](const TexCoord& t, AddressMode mode) {

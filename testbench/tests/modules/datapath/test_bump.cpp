@@ -57,7 +57,7 @@ Formats with_normals(int bits, int fraction) {
 
 }  // namespace
 
-TEST_CASE("bump: a flat map's normal gives N back") {
+TEST_CASE("bump: the normal of a flat map gives N") {
     Random random(7);
     for (int fraction = 0; fraction <= 16; ++fraction) {
         const Formats formats = with_normals(std::max(6, fraction + 2), fraction);
@@ -75,7 +75,7 @@ TEST_CASE("bump: a flat map's normal gives N back") {
     }
 }
 
-TEST_CASE("bump: against doubles, every legal normal format") {
+TEST_CASE("bump: agrees with doubles, every legal normal format") {
     Random random(8);
     for (int fraction = 0; fraction <= 16; ++fraction) {
         const Formats formats = with_normals(std::max(6, fraction + 2), fraction);
@@ -104,7 +104,7 @@ TEST_CASE("bump: against doubles, every legal normal format") {
     }
 }
 
-TEST_CASE("bump: a proper frame keeps within 1.5 LSB at the default format") {
+TEST_CASE("bump: the error of an orthogonal frame is within 1.5 LSB in the default format") {
     Random random(9);
     const Formats formats;
     double worst = 0;
@@ -139,7 +139,7 @@ TEST_CASE("bump: the frame is T, handedness * (N x T), N") {
     CHECK(bump(x, z, 1, along_v, formats, saturations) == Direction{13107, -9830, 0});
 }
 
-TEST_CASE("bump: saturation and lost directions are counted") {
+TEST_CASE("bump: saturated and zero normals are counted") {
     Saturations saturations;
     bump({0, 0, 16383}, {16383, 0, 0}, 1, {0, 0, 16383}, with_normals(15, 14), saturations);
     CHECK(saturations.normal == 1);
@@ -148,7 +148,7 @@ TEST_CASE("bump: saturation and lost directions are counted") {
     CHECK(saturations.total() == 2);
 }
 
-TEST_CASE("handedness of an inserted vertex: both ends' own, else -1, commutative") {
+TEST_CASE("handedness of an inserted vertex: 1 if both ends have 1, else -1") {
     for (const std::int8_t a : {std::int8_t{-1}, std::int8_t{1}}) {
         for (const std::int8_t b : {std::int8_t{-1}, std::int8_t{1}}) {
             Vertex i, j;

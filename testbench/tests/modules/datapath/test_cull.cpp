@@ -27,7 +27,7 @@ void check(const ScreenPosition& a, const ScreenPosition& b, const ScreenPositio
 
 }  // namespace
 
-TEST_CASE("culling: sign of the exact area, screen positions of 8 to 32 bits") {
+TEST_CASE("culling: follows the sign of the exact area, screen positions of 8 to 32 bits") {
     Random random(22);
     for (int k = 0; k < 600'000; ++k) {
         const int bits = static_cast<int>(random.integer(8, 32));
@@ -56,7 +56,8 @@ TEST_CASE("culling: corners of the widest screen") {
     }
 }
 
-TEST_CASE("culling: counter-clockwise faces us, edge-on is culled, behind the near plane is kept") {
+TEST_CASE(
+    "culling: keeps counter-clockwise triangles, culls edge-on ones, keeps any with a vertex behind the near plane") {
     const ScreenPosition a{0, 0, 0, true}, b{10, 0, 0, true}, c{0, 10, 0, true};
     CHECK_FALSE(faces_away(a, b, c));
     CHECK(faces_away(a, c, b));

@@ -51,7 +51,7 @@ TEST_CASE("curvature: an entry survives packing in 36 bits") {
     }
 }
 
-TEST_CASE("curvature: every edge of narrow formats, from both ends, against real numbers") {
+TEST_CASE("curvature: every edge of narrow formats, from both ends, agrees with real numbers") {
     Random random(2);
     const int fraction = GENERATE(0, 1, 2);
     const Formats f = narrow_formats(fraction);
@@ -79,7 +79,7 @@ TEST_CASE("curvature: every edge of narrow formats, from both ends, against real
     CHECK(wrong == 0);
 }
 
-TEST_CASE("curvature: at level 1 from three codes, either way round") {
+TEST_CASE("curvature: at level 1 the measure comes from three codes, in either direction") {
     for (std::uint32_t i = 0; i < 16; ++i)
         for (std::uint32_t j = 0; j < 16; ++j)
             for (std::uint32_t ij = 0; ij < 16; ++ij) {
@@ -89,7 +89,7 @@ TEST_CASE("curvature: at level 1 from three codes, either way round") {
             }
 }
 
-TEST_CASE("curvature: cells lie every 2^(l - 1) texels, the nearest is read, and levels lie one after another") {
+TEST_CASE("curvature: cells are 2^(l - 1) texels apart, the nearest is read, and levels follow one another") {
     const Formats f;
     const MapGeometry covered{21, 13, AddressMode::clamp, AddressMode::repeat};
     CHECK(highest_curvature_level(covered) == 5);
@@ -118,8 +118,7 @@ TEST_CASE("curvature: cells lie every 2^(l - 1) texels, the nearest is read, and
     CHECK(curvature_address({0, 0}, 9, 0, covered, f) == curvature_address({0, 0}, 5, 0, covered, f));
 }
 
-TEST_CASE(
-    "CT: every edge of narrow formats reads the same from both ends and decides the same, whatever the tables hold") {
+TEST_CASE("CT: every edge of narrow formats measures and decides alike from both ends, for any table contents") {
     const int fraction = GENERATE(0, 1);
     Registers r;
     r.formats = narrow_formats(fraction);

@@ -53,7 +53,7 @@ void check(const Position& p, const Direction& n, std::uint32_t code, const Disp
 
 }  // namespace
 
-TEST_CASE("displace: exact against 128 bits, whatever the operands") {
+TEST_CASE("displace: equals 128-bit arithmetic, for any operands") {
     Random random(10);
     for (int k = 0; k < 1'000'000; ++k) {
         Formats formats;
@@ -89,7 +89,7 @@ TEST_CASE("displace: every register at its limits") {
                     }
 }
 
-TEST_CASE("displace: heights to be seen with the naked eye") {
+TEST_CASE("displace: simple heights computed by hand") {
     const Formats formats;
     Saturations saturations;
     const Direction up{0, 0, 16384};

@@ -37,7 +37,7 @@ TEST_CASE("absolute difference: up to 62 bits") {
     }
 }
 
-TEST_CASE("Normal Test: the largest of six differences against the threshold") {
+TEST_CASE("Normal Test: compares the largest of six differences with the threshold") {
     // One component at a time, at, below and above the threshold, both signs, either end.
     TestParameters parameters;
     for (const std::uint32_t threshold : {0u, 1u, 4915u, 65534u, 65535u}) {
@@ -133,7 +133,7 @@ TEST_CASE("View Test: Manhattan length above the threshold, every pair of 5-bit 
     CHECK(view_test({low, high, 0, true}, {high, low, 0, true}, parameters));
 }
 
-TEST_CASE("View Test: one end behind the near plane counts as long, two as invisible, whatever the positions") {
+TEST_CASE("View Test: one end behind the near plane counts as long, two as invisible, for any positions") {
     TestParameters parameters;
     for (const std::uint32_t threshold : {0u, 100u, 0xffffffffu}) {
         parameters.view_threshold = threshold;
@@ -145,7 +145,8 @@ TEST_CASE("View Test: one end behind the near plane counts as long, two as invis
     }
 }
 
-TEST_CASE("Tex Coord Test: false if the midpoint's texel, or part of one, is an end's, every edge of 3 + 2 bits") {
+TEST_CASE(
+    "Tex Coord Test: false if the midpoint shares a texel, or a part of one, with an end, every edge of 3 + 2 bits") {
     Formats formats;
     formats.texture = Format::make_unsigned(6, 2);
     formats.tex_coord_fraction = GENERATE(0, 1, 2);
@@ -164,7 +165,7 @@ TEST_CASE("Tex Coord Test: false if the midpoint's texel, or part of one, is an 
                 }
 }
 
-TEST_CASE("Generation Test: one more than the older end, up to the limit") {
+TEST_CASE("Generation Test: an inserted vertex is one generation above the higher end, up to the limit") {
     for (int gi = 0; gi <= 255; ++gi) {
         for (int gj = 0; gj <= 255; ++gj) {
             Vertex i, j;

@@ -40,7 +40,7 @@ std::int64_t doubled_area(const Triangle& t) {
 
 }  // namespace
 
-TEST_CASE("endless case: the generation test ends the triangle that runs along its long edge") {
+TEST_CASE("endless case: the Generation Test ends the splits along the triangle's long edge") {
     Machine machine = half_donut_machine(normal_threshold, summed_height_threshold);
     const Triangle triangle = endless_triangle();
     WorkList work(machine, {triangle});
@@ -53,7 +53,7 @@ TEST_CASE("endless case: the generation test ends the triangle that runs along i
     CHECK(area == doubled_area(triangle));
 }
 
-TEST_CASE("endless case: without the generation test it never ends, for the machine's state repeats") {
+TEST_CASE("endless case: without the Generation Test it never ends, since the machine's state repeats") {
     Machine machine = half_donut_machine(normal_threshold, summed_height_threshold);
     machine.registers.tests.generation_test = false;
     machine.registers.formats.generation_bits = 8;
@@ -85,7 +85,7 @@ TEST_CASE("endless case: without the generation test it never ends, for the mach
     CHECK(machine.saturations.generation > 100'000);
 }
 
-TEST_CASE("endless case: the plane of 18, with the generation test and without") {
+TEST_CASE("endless case: the plane of 18 triangles, with the Generation Test and without") {
     Machine machine = half_donut_machine(normal_threshold, summed_height_threshold);
     const std::vector<Triangle> base = plane_of_18();
     std::int64_t base_area = 0;

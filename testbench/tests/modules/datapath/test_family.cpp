@@ -31,7 +31,7 @@ std::map<Ends, int> new_edges(const ChildIndices& indices) {
 
 }  // namespace
 
-TEST_CASE("family: 2 k halves and k edges inside, each once, in the order of the children") {
+TEST_CASE("family: k splits give 2 k halves and k inner edges, each once, in the order of the children") {
     for (unsigned split = 1; split < 8; ++split) {
         for (const bool second : {false, true}) {
             const ChildIndices indices = triangulate(split, second);
@@ -63,7 +63,7 @@ TEST_CASE("family: 2 k halves and k edges inside, each once, in the order of the
     }
 }
 
-TEST_CASE("family: a base triangle's three edges are new, a finished one has none") {
+TEST_CASE("family: a base triangle has three new edges, a finished one has none") {
     const FamilyEdges base = family_edges(triangulate(0, false), open_edges(true, 0));
     CHECK(base.count == 3);
     for (std::uint8_t e = 0; e < 3; ++e) {
@@ -77,7 +77,7 @@ TEST_CASE("family: a base triangle's three edges are new, a finished one has non
         CHECK(finished.of_child[0][e] == FamilyEdges::whole);
 }
 
-TEST_CASE("family: edges that asked while another was cut are tested with the children's") {
+TEST_CASE("family: uncut edges that asked for a split are tested with the children's edges") {
     for (unsigned cut = 1; cut < 8; cut *= 2) {
         for (unsigned uncut = 0; uncut < 8; ++uncut) {
             if ((uncut & cut) != 0)

@@ -9,7 +9,7 @@
 using namespace tessera::datapath;
 using namespace tessera::testing;
 
-TEST_CASE("formats: what the wires hold") {
+TEST_CASE("formats: lowest and highest values") {
     for (int bits = 1; bits <= 48; ++bits) {
         const Format s = Format::make_signed(bits, 0), u = Format::make_unsigned(bits, 3);
         CHECK(static_cast<double>(s.lowest) == -std::ldexp(1.0, bits - 1));
@@ -22,7 +22,7 @@ TEST_CASE("formats: what the wires hold") {
     CHECK(Formats{}.texture.highest >= 4096 << Formats{}.texture.fraction);
 }
 
-TEST_CASE("saturate: the nearest value that fits, each miss counted once") {
+TEST_CASE("saturate: gives the nearest value that fits, counts each saturation once") {
     for (const Format& format : {Format::make_signed(8, 4), Format::make_unsigned(8, 0), Format::make_signed(1, 0)}) {
         for (std::int64_t value = -1000; value <= 1000; ++value) {
             std::uint64_t count = 7;
@@ -40,7 +40,7 @@ TEST_CASE("saturate: the nearest value that fits, each miss counted once") {
     CHECK(count == 2);
 }
 
-TEST_CASE("saturations: sums and totals lose none") {
+TEST_CASE("saturations: sums and totals include every counter") {
     Saturations a;
     a.displaced_position = 1;
     a.normal = 2;
@@ -58,7 +58,7 @@ TEST_CASE("saturations: sums and totals lose none") {
     CHECK(b.total() == 62);
 }
 
-TEST_CASE("round_shift: nearest, a tie upwards") {
+TEST_CASE("round_shift: rounds to nearest, ties upwards") {
     for (int shift = 0; shift <= 9; ++shift) {
         for (std::int64_t value = -2048; value <= 2048; ++value) {
             const auto expected =

@@ -58,7 +58,7 @@ std::vector<Direction> all_directions(std::int32_t least, std::int32_t most) {
 
 }  // namespace
 
-TEST_CASE("Highlight Test: every edge of normals of 2 bits, as defined, the same both ways") {
+TEST_CASE("Highlight Test: every edge of 2-bit normals follows the definition, in both directions") {
     const std::vector<Direction> all = all_directions(-2, 1);
     std::uint64_t asked = 0;
     for (const auto& parameters :
@@ -77,7 +77,7 @@ TEST_CASE("Highlight Test: every edge of normals of 2 bits, as defined, the same
     CHECK(asked > 100'000);
 }
 
-TEST_CASE("Highlight Test: random normals of the widest formats, as defined, the same both ways") {
+TEST_CASE("Highlight Test: random normals of the widest formats follow the definition, in both directions") {
     Random random(51);
     std::array<int, 2> seen{};
     for (const std::int32_t limit : {31, 1 << 11, 1 << 15, 1 << 17}) {
@@ -101,7 +101,7 @@ TEST_CASE("Highlight Test: random normals of the widest formats, as defined, the
     CHECK(seen[1] > 10'000);
 }
 
-TEST_CASE("Highlight Test: the border itself is outside, a single LSB decides") {
+TEST_CASE("Highlight Test: a cosine equal to the limit is outside, one LSB more is inside") {
     const Direction on{0, 0, 1000}, off{0, 0, -1000};
     const auto asks = [&](const Direction& i, const Direction& j, const Direction& ij, std::int64_t cosine,
                           std::uint32_t threshold) {
@@ -122,7 +122,7 @@ TEST_CASE("Highlight Test: the border itself is outside, a single LSB decides") 
     CHECK_FALSE(in_highlight({lowest, lowest, lowest + 1}, widest));
 }
 
-TEST_CASE("Highlight Test: never where the normals are alike, never without a half vector") {
+TEST_CASE("Highlight Test: never splits between equal normals, or with a zero half vector") {
     Random random(52);
     for (int k = 0; k < 100'000; ++k) {
         const Direction n{random.integer32(-16384, 16384), random.integer32(-16384, 16384),
@@ -177,7 +177,7 @@ TEST_CASE("symmetry: with a Highlight Test, decision and inserted vertex are the
     CHECK(alone < edges);
 }
 
-TEST_CASE("queue entry: one bit more with a Highlight Test, none without") {
+TEST_CASE("queue entry: one bit wider with a Highlight Test") {
     Formats without, with;
     with.highlight_tag = true;
     CHECK(stream_widths(with).triangle == stream_widths(without).triangle + 1);
@@ -205,7 +205,7 @@ TEST_CASE("queue entry: one bit more with a Highlight Test, none without") {
     }
 }
 
-TEST_CASE("children say that the Highlight Test split their parent") {
+TEST_CASE("children record that the Highlight Test split their parent") {
     TrianglePass pass;
     pass.split = 1;
     pass.edges[0].tests = highlight_bit | gating_tests;

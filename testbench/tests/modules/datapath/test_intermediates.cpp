@@ -346,7 +346,7 @@ void check_rank_view(const Formats& f, bool tight) {
 
 }  // namespace
 
-TEST_CASE("intermediates: operands at their limits need no more bits than declared, nor much less") {
+TEST_CASE("intermediates: operands at their limits need no more bits than declared, and not far fewer") {
     bool tight = true;  // the first are the default formats
     for (const Formats& formats : formats_to_try()) {
         check_bilinear(formats, tight);
@@ -362,7 +362,7 @@ TEST_CASE("intermediates: operands at their limits need no more bits than declar
     }
 }
 
-TEST_CASE("intermediates: Newton's steps, over their operands' range") {
+TEST_CASE("intermediates: Newton steps over the range of their operands") {
     Reach root_m, y, square, root_product, root_step, m, r, product, correction, step;
     for (std::uint64_t at = 0; at < (std::uint64_t{1} << 32); at += at < 0x40000000 ? 0x40000000 : 10007) {
         const auto value = static_cast<std::uint32_t>(at);
@@ -409,9 +409,7 @@ TEST_CASE("intermediates: Newton's steps, over their operands' range") {
     check("reciprocal", inverse.step, step, true);
 }
 
-TEST_CASE(
-    "intermediates: the model's integers hold those of every legal format, and of a wider one they say which "
-    "not") {
+TEST_CASE("intermediates: every legal format fits the model's integers, and the first misfit of a wider one is named") {
     using Limits = FormatLimits;
     const auto misfit = [](const Formats& formats) {
         std::string found;

@@ -9,7 +9,7 @@
 using namespace tessera::datapath;
 using namespace tessera::testing;
 
-TEST_CASE("light: against doubles, 0..255, any operands, every legal normal format") {
+TEST_CASE("light: agrees with doubles, 0..255, any operands, every legal normal format") {
     Random random(23);
     Saturations saturations;
     std::uint64_t saturated = 0;

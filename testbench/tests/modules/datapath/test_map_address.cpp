@@ -6,7 +6,7 @@
 
 using namespace tessera::datapath;
 
-TEST_CASE("integer part: floor of the coordinate, every one of a narrow format") {
+TEST_CASE("integer part: the floor of the coordinate, every coordinate of a narrow format") {
     for (int fraction = 0; fraction <= 12; ++fraction) {
         Formats formats;
         formats.texture = Format::make_unsigned(3 + fraction + 1, fraction);
@@ -16,7 +16,7 @@ TEST_CASE("integer part: floor of the coordinate, every one of a narrow format")
     }
 }
 
-TEST_CASE("texel index: inside is itself, beyond the border the last texel (clamp), the first again (repeat)") {
+TEST_CASE("texel index: unchanged inside the map, beyond the border the last texel (clamp), modulo the size (repeat)") {
     for (std::uint32_t size = 1; size <= 9; ++size) {
         for (std::uint32_t index = 0; index <= 40; ++index) {
             CHECK(texel_index(index, size, AddressMode::clamp) == (index < size ? index : size - 1));

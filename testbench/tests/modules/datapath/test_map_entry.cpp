@@ -7,7 +7,7 @@
 using namespace tessera::datapath;
 using namespace tessera::testing;
 
-TEST_CASE("normal map entry: packed and unpacked, every width from 4 to 21") {
+TEST_CASE("normal map entry: unpacking restores the packed normal, every width from 4 to 21") {
     Random random(19);
     for (int bits = 4; bits <= 21; ++bits) {
         const std::int64_t low = -(std::int64_t{1} << (bits - 1)), high = -low - 1;
@@ -36,14 +36,14 @@ TEST_CASE("normal map entry: packed and unpacked, every width from 4 to 21") {
     }
 }
 
-TEST_CASE("normal map entry: x lowest") {
+TEST_CASE("normal map entry: x is in the lowest bits") {
     CHECK(pack_normal({1, 2, 3}, 8) == 0x030201);
     CHECK(pack_normal({-1, 0, 0}, 16) == 0xffff);
     CHECK(pack_normal({0, 0, -32768}, 16) == 0x800000000000);
     CHECK(unpack_normal(0x0302ff, 8) == Direction{-1, 2, 3});
 }
 
-TEST_CASE("entry bytes: whole bytes") {
+TEST_CASE("entry bytes: bits are rounded up to whole bytes") {
     CHECK(entry_bytes(1) == 1);
     CHECK(entry_bytes(8) == 1);
     CHECK(entry_bytes(9) == 2);

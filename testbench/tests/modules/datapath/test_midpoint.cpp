@@ -30,7 +30,7 @@ TEST_CASE("midpoint: floor of the mean, commutative, between its operands, every
     }
 }
 
-TEST_CASE("midpoint: the real widths, limits included") {
+TEST_CASE("midpoint: 32-bit operands, limits included") {
     Random random(2);
     const std::int64_t limit = std::numeric_limits<std::int32_t>::max();
     for (int k = 0; k < 1'000'000; ++k) {
@@ -48,7 +48,7 @@ TEST_CASE("midpoint: the real widths, limits included") {
     CHECK(midpoint(all, all - 1) == all - 1);
 }
 
-TEST_CASE("midpoint: of vectors, component by component") {
+TEST_CASE("midpoint: vectors, component by component") {
     CHECK(midpoint(Position{1, -3, 5}, Position{2, -4, 100}) == Position{1, -4, 52});
     CHECK(midpoint(Direction{-1, 0, 8}, Direction{0, -1, 9}) == Direction{-1, -1, 8});
     CHECK(midpoint(TexCoord{7, 10}, TexCoord{8, 20}) == TexCoord{7, 15});

@@ -10,7 +10,7 @@
 
 using namespace tessera::datapath;
 
-TEST_CASE("mipmap: level, every edge of a narrow format, from both ends") {
+TEST_CASE("mipmap: the level of every edge of a narrow format, from both ends") {
     Formats f;
     f.texture = Format::make_unsigned(3 + 1 + 1, 1);
     const MapGeometry map{8, 5, AddressMode::clamp, AddressMode::clamp};
@@ -28,7 +28,7 @@ TEST_CASE("mipmap: level, every edge of a narrow format, from both ends") {
     CHECK(mipmap_level({0, 0}, {16, 16}, {2, 2, AddressMode::repeat, AddressMode::repeat}, f) == 1);
 }
 
-TEST_CASE("mipmap: blocks of 2^l texels, level after level, under the addressed texel") {
+TEST_CASE("mipmap: a texel's entry is that of its block of 2^l texels, levels follow one another") {
     const Formats f;
     const MapGeometry map{9, 5, AddressMode::repeat, AddressMode::clamp};
     REQUIRE(highest_mipmap_level(map) == 4);
@@ -50,7 +50,7 @@ TEST_CASE("mipmap: blocks of 2^l texels, level after level, under the addressed 
     CHECK(mipmap_blocks(4, map).rows == 1);
 }
 
-TEST_CASE("mipmap: the test's threshold is twice the height by which the midpoint leaves the chord") {
+TEST_CASE("mipmap: the threshold is twice the midpoint's deviation from the chord") {
     TestParameters tests;
     for (std::uint64_t i = 0; i < 16; ++i)
         for (std::uint64_t j = 0; j < 16; ++j)
@@ -63,7 +63,7 @@ TEST_CASE("mipmap: the test's threshold is twice the height by which the midpoin
                 }
 }
 
-TEST_CASE("MT: the entries of both ends and of the midpoint, of the edge's level") {
+TEST_CASE("MT: reads the entries of both ends and the midpoint, at the edge's level") {
     Registers r;
     r.formats.height_test = HeightTest::mipmap;
     r.map = {40, 24, AddressMode::clamp, AddressMode::repeat};

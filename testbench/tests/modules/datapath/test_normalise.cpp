@@ -55,7 +55,7 @@ TEST_CASE("normalise: every vector of narrow formats") {
     }
 }
 
-TEST_CASE("normalise: every legal normal format, any length of vector up to 31 bits") {
+TEST_CASE("normalise: every legal normal format, vectors of up to 31 bits") {
     Random random(5);
     for (int fraction = 0; fraction <= 16; ++fraction) {
         const Formats formats = with_normals(std::max(6, fraction + 2), fraction);
@@ -115,7 +115,7 @@ TEST_CASE("normalise: a zero vector stays zero and is counted") {
     CHECK(saturations.total() == 2);
 }
 
-TEST_CASE("normalise: a format without room for 1 saturates, counted") {
+TEST_CASE("normalise: a format that cannot hold 1 saturates, and is counted") {
     const Formats formats = with_normals(15, 14);
     Saturations saturations;
     CHECK(normalise(5, 0, 0, formats, saturations) == Direction{16383, 0, 0});

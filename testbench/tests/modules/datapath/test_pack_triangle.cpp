@@ -272,7 +272,7 @@ constexpr bool survives_at_compile_time() {
 
 }  // namespace
 
-TEST_CASE("pack triangle: the declared width of the queue's entry, in whole bytes") {
+TEST_CASE("pack triangle: a queue entry has the declared width, rounded up to whole bytes") {
     CHECK(packed_triangle_bytes(Formats{}) == 197);  // 1572 bits
     static_assert(survives_at_compile_time());
     for (const Formats& formats : many_formats()) {
@@ -285,7 +285,7 @@ TEST_CASE("pack triangle: the declared width of the queue's entry, in whole byte
     }
 }
 
-TEST_CASE("pack triangle: places by hand in the default formats") {
+TEST_CASE("pack triangle: field positions computed by hand in the default formats") {
     const Formats formats;
     Packed packed(formats);
     Triangle triangle;
@@ -318,7 +318,7 @@ TEST_CASE("pack triangle: places by hand in the default formats") {
     CHECK(std::vector<unsigned char>(packed.bytes(), packed.bytes() + packed.size) == expected);
 }
 
-TEST_CASE("pack triangle: random triangles, against bits written one by one") {
+TEST_CASE("pack triangle: random triangles, compared with bits written one by one") {
     Random random(1);
     for (const Formats& formats : many_formats()) {
         const std::vector<ExpectedField> fields = fields_of(formats);
@@ -327,7 +327,7 @@ TEST_CASE("pack triangle: random triangles, against bits written one by one") {
     }
 }
 
-TEST_CASE("pack triangle: the ends of every field, alone and among the ends of all others") {
+TEST_CASE("pack triangle: the limits of every field, alone and with all others at their limits") {
     for (const Formats& formats : many_formats()) {
         const std::vector<ExpectedField> fields = fields_of(formats);
         for (const int rest : {0, 1, 2}) {
@@ -346,7 +346,7 @@ TEST_CASE("pack triangle: the ends of every field, alone and among the ends of a
     }
 }
 
-TEST_CASE("pack triangle: every bit up to the width is one field's, none beyond is any's") {
+TEST_CASE("pack triangle: every bit up to the width belongs to one field, none beyond it to any") {
     Random random(2);
     for (const Formats& formats : many_formats()) {
         const std::vector<ExpectedField> fields = fields_of(formats);
@@ -375,7 +375,7 @@ TEST_CASE("pack triangle: every bit up to the width is one field's, none beyond 
     }
 }
 
-TEST_CASE("pack triangle: a value that does not fit is reported and spoils no other") {
+TEST_CASE("pack triangle: a value that does not fit is reported and changes no other field") {
     Random random(3);
     std::size_t reported = 0;
     for (const Formats& formats : many_formats()) {
@@ -402,7 +402,7 @@ TEST_CASE("pack triangle: a value that does not fit is reported and spoils no ot
     CHECK(reported > 5000);
 }
 
-TEST_CASE("pack triangle: what cannot come out of a test is no set of tests") {
+TEST_CASE("pack triangle: an impossible set of tests is reported") {
     const Formats formats;
     Packed packed(formats);
     for (int value = 0; value < 256; ++value) {
@@ -423,7 +423,7 @@ TEST_CASE("pack triangle: a handedness is 1 or -1") {
     }
 }
 
-TEST_CASE("pack triangle: generations without a limit are reported from the first too large for the wires") {
+TEST_CASE("pack triangle: a generation too large for its field is reported") {
     for (int bits = 1; bits <= 8; ++bits) {
         Formats formats;
         formats.generation_bits = bits;

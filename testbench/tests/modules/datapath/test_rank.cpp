@@ -41,7 +41,7 @@ TEST_CASE("an edge of even length has a midpoint on its ends' lattice, from eith
     CHECK(on_lattice > 1000);
 }
 
-TEST_CASE("an entry's rank lies below its bound", "[rank]") {
+TEST_CASE("an entry's rank is in the bits below its bound", "[rank]") {
     Formats formats;
     formats.height_test = HeightTest::rank;
     for (const int rank_bits : {0, 6, 8, 16}) {
@@ -58,7 +58,7 @@ TEST_CASE("an entry's rank lies below its bound", "[rank]") {
     }
 }
 
-TEST_CASE("RT: above either threshold, not at it", "[rank]") {
+TEST_CASE("RT: splits above either threshold, not at it", "[rank]") {
     TestParameters parameters;
     parameters.rank_threshold = 10;
     parameters.bound_threshold = 20;
@@ -68,7 +68,7 @@ TEST_CASE("RT: above either threshold, not at it", "[rank]") {
     CHECK_FALSE(rank_test({0, 0}, {}));
 }
 
-TEST_CASE("the entry of a midpoint lies under it, beyond the table under its border or a period before", "[rank]") {
+TEST_CASE("a midpoint's entry is at its own texel, beyond the table at the border or a period before", "[rank]") {
     const Formats formats = narrow();
     const TableLayout table{100, 4, 3, 2};
     MapGeometry map{4, 3, AddressMode::clamp, AddressMode::clamp};
@@ -78,7 +78,7 @@ TEST_CASE("the entry of a midpoint lies under it, beyond the table under its bor
     CHECK(rank_address({2 * 5, 2 * 4}, table, map, formats) == 100 + 2 * (1 * 4 + 1));
 }
 
-TEST_CASE("one edge is cut: the greatest rank, of equal ones the longer, then the first", "[rank]") {
+TEST_CASE("one edge is cut: that of greatest rank, among equals the longest, then the first", "[rank]") {
     for (unsigned code = 0; code < 8 * 27 * 27; ++code) {
         const unsigned asked = code % 8, r = code / 8 % 27, l = code / 8 / 27;
         const std::array<std::uint16_t, 3> ranks{static_cast<std::uint16_t>(r % 3),

@@ -52,7 +52,7 @@ TEST_CASE("D is at most the Euclidean distance, and at least 0.873 of it, from e
     CHECK(most <= 1);
 }
 
-TEST_CASE("D changes by no more than what it is the distance of moves, and saturates", "[rank]") {
+TEST_CASE("D changes by no more than the distance moved, and saturates", "[rank]") {
     Formats formats = with_distances();
     formats.view_distance = Format::make_signed(32, 13);  // 3 bits fewer than positions
     Random random(2);
@@ -68,7 +68,7 @@ TEST_CASE("D changes by no more than what it is the distance of moves, and satur
     CHECK(distance_from(87, 0, 0, formats) == 10);
 }
 
-TEST_CASE("the level is the logarithm, straight between powers of two and rounded down", "[rank]") {
+TEST_CASE("the level is the logarithm, linear between powers of two and rounded down", "[rank]") {
     CHECK(distance_level(0) == 0);
     std::uint32_t before = 0;
     for (std::uint64_t distance = 1; distance < std::uint64_t{1} << 36; distance += 1 + distance / 1000) {
@@ -94,7 +94,7 @@ TEST_CASE("a radius has four significant bits and an exponent", "[rank]") {
         REQUIRE(midpoint_radius(code) > midpoint_radius(code - 1));
 }
 
-TEST_CASE("an entry's radius lies above its bound, where there is one", "[rank]") {
+TEST_CASE("an entry's radius is in the bits above its bound, if it has a bound", "[rank]") {
     const Formats formats = with_distances(6, 9);
     REQUIRE(height_entry_bits(formats) == 6 + 9 + 8);
     const RankEntry entry = rank_entry(0x15u | 0x155u << 6 | std::uint64_t{0xa5} << 15, formats);
@@ -105,7 +105,7 @@ TEST_CASE("an entry's radius lies above its bound, where there is one", "[rank]"
     CHECK(rank_entry(0xff, with_distances(8, 0)).radius == 0);
 }
 
-TEST_CASE("the thresholds rise with distance: a rank's by two or four octaves for one, a bound's by one", "[rank]") {
+TEST_CASE("the thresholds rise with distance: per octave a rank's by two or four, a bound's by one", "[rank]") {
     TestParameters parameters;
     const auto asks = [&](const RankEntry& entry, std::uint64_t distance, const Formats& formats) {
         return rank_test_in_view(entry, {distance, 0}, parameters, formats);
@@ -133,7 +133,7 @@ TEST_CASE("the thresholds rise with distance: a rank's by two or four octaves fo
     CHECK_FALSE(asks({0, (bound >> 10) - 1, 0}, (1 << 10) + 8, with_distances(0, 6)));
 }
 
-TEST_CASE("a sphere that holds the eye asks, one behind the viewer does not, nor an entry of 0", "[rank]") {
+TEST_CASE("a sphere around the eye splits, one behind the viewer does not, nor does an entry of 0", "[rank]") {
     const Formats formats = with_distances();
     TestParameters parameters;
     parameters.bound_threshold = parameters.rank_threshold = 65535;
@@ -152,7 +152,7 @@ TEST_CASE("a sphere that holds the eye asks, one behind the viewer does not, nor
     CHECK(rank_test_in_view({1, 0, 0}, {farthest, 0}, parameters, formats));
 }
 
-TEST_CASE("an edge is the same from either end, and a thousand random ones are not all alike", "[rank]") {
+TEST_CASE("an edge decides alike from either end, and a thousand random edges give both decisions", "[rank]") {
     Random random(3);
     std::set<bool> found;
     for (int trial = 0; trial < 1000; ++trial) {

@@ -100,7 +100,7 @@ TEST_CASE("the datapath's README names every function of its headers, and no oth
     }
 }
 
-TEST_CASE("the README's intermediates are those of the code, with their widths in the default formats") {
+TEST_CASE("the README lists the code's intermediates, with their widths in the default formats") {
     std::vector<std::vector<std::string>> expected;
     visit_intermediates(Formats{}, [&](const char* function, const auto& widths) {
         for (const Width& width : widths.all())
@@ -133,7 +133,7 @@ void visit_every_register(Visit visit) {
 
 }  // namespace
 
-TEST_CASE("the README's registers are those of the code, with their widths in the default formats") {
+TEST_CASE("the README lists the code's registers, with their widths in the default formats") {
     std::vector<std::vector<std::string>> expected;
     visit_every_register([&](const Register& field, const auto& values) {
         expected.push_back({in_code(field.name),
@@ -162,7 +162,7 @@ TEST_CASE("registers: the table has every parameter") {
     CHECK(found["map"] == count_members<MapGeometry>());
 }
 
-TEST_CASE("registers: only a design with a Highlight Test has those of the test") {
+TEST_CASE("registers: only a design with a Highlight Test has the test's registers") {
     const auto names = [](bool highlight) {
         Registers registers;
         registers.formats.highlight_tag = highlight;
@@ -174,8 +174,7 @@ TEST_CASE("registers: only a design with a Highlight Test has those of the test"
     CHECK(names(true).size() == names(false).size() + 4);
 }
 
-TEST_CASE(
-    "registers: only a design with a test in the Summed Height Test's place has those of the test, the last ones") {
+TEST_CASE("registers: a test in place of the Summed Height Test adds its own registers, at the end") {
     const auto names = [](HeightTest test) {
         Registers registers;
         registers.formats.height_test = test;
@@ -205,7 +204,7 @@ TEST_CASE(
     CHECK(std::equal(rank.begin(), rank.end(), in_view.begin()));
 }
 
-TEST_CASE("registers: a register holds what its bits hold") {
+TEST_CASE("registers: a register holds only values that fit its bits") {
     const Register number{"", RegisterKind::unsigned_number, 9, ""};
     CHECK(holds(number, 0));
     CHECK(holds(number, 511));

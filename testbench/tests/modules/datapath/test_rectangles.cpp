@@ -147,7 +147,7 @@ TEST_CASE("rectangles: size by division, at least one texel, at most the map, co
     }
 }
 
-TEST_CASE("rectangles: four reads equal the sum texel by texel") {
+TEST_CASE("rectangles: four reads give the sum over the texels") {
     Random random(15);
     for (const auto& [width, height] : sizes) {
         check_sums(width, height, 48, random_codes(width, height, random), random);
@@ -192,7 +192,7 @@ TEST_CASE("rectangles: four reads inside the map, six across one border, nine ac
     CHECK(reads({4, 7, 3, 5}) == 9);
 }
 
-TEST_CASE("rectangles: 32-bit entries agree with 64-bit ones on a large map of large codes") {
+TEST_CASE("rectangles: 32-bit entries agree with 48-bit ones on a large map of large codes") {
     Random random(17);
     constexpr std::uint32_t width = 700, height = 500;  // sums up to 2^34.4: wraps five times
     std::vector<std::uint32_t> codes(std::size_t{width} * height);

@@ -209,7 +209,7 @@ TEST_CASE("reversal: handedness and generation of an inserted vertex, every pair
         }
 }
 
-TEST_CASE("random edges: the same from the same seed, and every kind of threshold is met") {
+TEST_CASE("random edges: the same seed gives the same results, and every kind of threshold is met exactly") {
     const EdgeTrial trial = try_random_edges(7, 40'000), again = try_random_edges(7, 40'000);
     INFO(trial.first_fault);
     CHECK(trial.faults() == 0);

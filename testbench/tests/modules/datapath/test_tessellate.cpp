@@ -81,7 +81,7 @@ void check_equality(const Part& part, Fields Part::*... fields) {
 
 }  // namespace
 
-TEST_CASE("vertex: parts are equal when every field is") {
+TEST_CASE("vertex: parts are equal only if every field is") {
     check_equality(Position{5, 6, 7}, &Position::x, &Position::y, &Position::z);
     check_equality(Direction{5, 6, 7}, &Direction::x, &Direction::y, &Direction::z);
     check_equality(TexCoord{5, 6}, &TexCoord::u, &TexCoord::v);

@@ -127,7 +127,7 @@ TEST_CASE("transform: any position, any legal register") {
     CHECK(worst.relative < 0x1p-28);
 }
 
-TEST_CASE("transform: a camera's registers, positions spread over the picture and beyond") {
+TEST_CASE("transform: a camera's registers, positions inside the picture and outside") {
     Random random(12);
     Worst worst;
     for (int view = 0; view < 200; ++view) {
@@ -164,7 +164,7 @@ TEST_CASE("transform: a camera's registers, positions spread over the picture an
     CHECK(worst.in_front > 500'000);
 }
 
-TEST_CASE("transform: no corner of what the host can set overflows") {
+TEST_CASE("transform: extreme registers and positions do not overflow") {
     Worst worst;
     constexpr std::int64_t low = std::numeric_limits<std::int32_t>::min(), high = 0x7fffffff;
     const std::array<std::int64_t, 3> entries{-largest_entry, 0, largest_entry};
@@ -204,7 +204,7 @@ TEST_CASE("transform: no corner of what the host can set overflows") {
     CHECK(worst.in_front > 10'000);
 }
 
-TEST_CASE("transform: on the near plane is behind it, one step further is not") {
+TEST_CASE("transform: a vertex on the near plane is behind it, one LSB farther it is not") {
     TransformParameters parameters;
     parameters.row_w = {0, 0, 1, 0};
     parameters.row_x = {1, 0, 0, 0};
@@ -243,7 +243,7 @@ TEST_CASE("transform: the distance w is rounded to its own format and saturates"
     CHECK(saturations.view_distance == 2);
 }
 
-TEST_CASE("transform_normal: a rotation to the nearest LSB, exact against 128 bits, saturation counted") {
+TEST_CASE("transform_normal: rotates to the nearest LSB, equals 128-bit arithmetic, counts saturations") {
     Random random(13);
     for (int k = 0; k < 300'000; ++k) {
         Formats formats;

@@ -48,7 +48,7 @@ constexpr std::array<int, 8> children_of{1, 2, 2, 3, 2, 3, 3, 4};
 
 }  // namespace
 
-TEST_CASE("triangulate: all eight splits, both diagonals: covers, keeps winding, no edge too many or too few") {
+TEST_CASE("triangulate: all eight splits, both diagonals: covers the parent, keeps winding, no edge missing or extra") {
     for (unsigned split = 0; split < 8; ++split) {
         for (const bool second : {false, true}) {
             const ChildIndices result = triangulate(split, second);
@@ -93,7 +93,7 @@ TEST_CASE("triangulate: all eight splits, both diagonals: covers, keeps winding,
     }
 }
 
-TEST_CASE("triangulate: two split edges, the two choices differ in the diagonal and nothing else") {
+TEST_CASE("triangulate: with two split edges, the two choices differ only in the diagonal") {
     for (const unsigned split : {3u, 5u, 6u}) {
         const ChildIndices first = triangulate(split, false), second = triangulate(split, true);
         CHECK(first.children[0] == second.children[0]);  // the cut-off corner
@@ -103,14 +103,14 @@ TEST_CASE("triangulate: two split edges, the two choices differ in the diagonal 
         CHECK(triangulate(split, false).children == triangulate(split, true).children);
 }
 
-TEST_CASE("triangulate: the corner cut off lies opposite the whole edge") {
+TEST_CASE("triangulate: the corner cut off is opposite the unsplit edge") {
     const auto corner = [](unsigned split) { return triangulate(split, false).children[0]; };
     CHECK(corner(3) == std::array<std::uint8_t, 3>{3, 1, 4});
     CHECK(corner(6) == std::array<std::uint8_t, 3>{5, 4, 2});
     CHECK(corner(5) == std::array<std::uint8_t, 3>{0, 3, 5});
 }
 
-TEST_CASE("remaining quadrilateral: in the triangle's order from its first remaining vertex") {
+TEST_CASE("remaining quadrilateral: vertices are in the triangle's order from the first that remains") {
     using Four = std::array<std::uint8_t, 4>;
     // the walk 0 3 1 4 2 5 without the corner opposite the unsplit edge
     CHECK(remaining_quadrilateral(0) == Four{0, 1, 4, 5});
@@ -118,7 +118,7 @@ TEST_CASE("remaining quadrilateral: in the triangle's order from its first remai
     CHECK(remaining_quadrilateral(2) == Four{0, 3, 4, 2});
 }
 
-TEST_CASE("diagonal: the second if it is shorter than the first by more than a 64th") {
+TEST_CASE("diagonal: the second is chosen if it is shorter than the first by more than a 64th") {
     Random random(25);
     int close = 0, seconds = 0;
     for (int k = 0; k < 600'000; ++k) {
@@ -150,7 +150,7 @@ TEST_CASE("diagonal: the second if it is shorter than the first by more than a 6
     CHECK(seconds > 500'000);
 }
 
-TEST_CASE("diagonal: rounding does not choose between equal lengths") {
+TEST_CASE("diagonal: rounding errors do not decide between equal lengths") {
     // A square of 640 LSB over a level map, its corners moved by a few LSB: first diagonal 0 to 4, second 1 to 5.
     const auto second = [](int first_length, int second_length) {
         std::array<Position, 6> p{};

@@ -4,7 +4,7 @@
 
 using namespace tessera::datapath;
 
-TEST_CASE("widths: the streams' bits of the default formats, added up by hand") {
+TEST_CASE("widths: stream widths in the default formats, added up by hand") {
     // P 3 x 32; N, T 3 x 16; t 2 x 25; P's 2 x 24, w 32, in front 1
     const Widths widths = stream_widths(Formats{});
     CHECK(widths.base_vertex == 96 + 48 + 48 + 1 + 50);

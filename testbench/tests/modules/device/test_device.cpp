@@ -120,13 +120,13 @@ const CaseTable<Row> same{
          true},
         {"timed, a Curvature Test, modern design, a repeated map", curvature_test_modern, true},
         {"timed, a Mipmap Test, modern design", mipmap_test, true},
-        {"timed, a Rank Test as the viewer sees it, modern design", rank_test_in_view, true},
+        {"timed, a view-dependent Rank Test, modern design", rank_test_in_view, true},
         {"functional, watermark 50", "hardware.queue_watermark=50", false, 3},
         {"timed, watermark 50", "hardware.queue_watermark=50", true, 3},
         {"functional, narrow formats", narrow_formats, false},
-        {"functional, narrow formats, more in memory", narrow_formats, false, 100, false, 0, 4, true},
-        {"timed, narrow formats, more in memory, spilling, codes in vertices", narrow_and_codes, true, 100, false, 0,
-         64, true},
+        {"functional, narrow formats, surplus bits set in memory", narrow_formats, false, 100, false, 0, 4, true},
+        {"timed, narrow formats, surplus bits set in memory, spilling, codes in vertices", narrow_and_codes, true, 100,
+         false, 0, 64, true},
     },
     [](const Row& row) { same_as_testbench(row, setup_of(small_job(row.timed, row.settings))); }};
 

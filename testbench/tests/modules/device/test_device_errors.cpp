@@ -39,7 +39,7 @@ const std::vector<Refusal> refusals{
 };
 
 const CaseTable<BenchMode> refused_frames{
-    "a frame with a wrong register is refused, changes nothing, and the next one is right: ",
+    "a frame with a wrong register is refused, changes nothing, and the next frame is correct: ",
     {{"functional", false}, {"timed", true}},
     [](const BenchMode& mode) {
         const MachineSetup setup = setup_for(mode);
@@ -78,7 +78,7 @@ const CaseTable<BenchMode> refused_frames{
     }};
 
 const CaseTable<BenchMode> stopped_frames{
-    "a bus error stops the frame: nothing more is written, the cause is there, and the next one is right: ",
+    "a bus error stops the frame: nothing more is written, the cause is reported, and the next frame is correct: ",
     {{"functional", false}, {"timed", true}},
     [](const BenchMode& mode) {
         const MachineSetup setup = setup_for(mode);
@@ -129,7 +129,7 @@ const CaseTable<BenchMode> stopped_frames{
     }};
 
 const CaseTable<BenchMode> bad_triangles{
-    "a base triangle beyond its formats stops the frame: ",
+    "a base triangle that does not fit its formats stops the frame: ",
     {{"functional", false}, {"timed", true}},
     [](const BenchMode& mode) {
         const MachineSetup setup = setup_for(mode);
@@ -158,7 +158,7 @@ const CaseTable<BenchMode> bad_triangles{
     }};
 
 const CaseTable<BenchMode> endless{
-    "a frame that splits without end is stopped when the queue is full, or by a reset: ",
+    "a frame that splits without end is stopped by a full queue, or by a reset: ",
     {{"functional", false}, {"timed", true}},
     [](const BenchMode& mode) {
         const std::string off_chip =
@@ -195,7 +195,7 @@ const CaseTable<BenchMode> endless{
     }};
 
 const CaseTable<BenchMode> halted_clock{
-    "a machine whose clock halts ends the frame with its error: ", {{"timed", true}}, [](const BenchMode& mode) {
+    "a halted clock ends the frame with an error: ", {{"timed", true}}, [](const BenchMode& mode) {
         const MachineSetup setup = setup_for(mode);
         Bench bench({formats_of(setup)}, design_of(setup));
         const FramePlaces places = bench.place(setup, 5000);
@@ -246,7 +246,7 @@ const std::vector<BusAccess> accesses{
 
 }  // namespace
 
-TEST_CASE("register accesses: each is done as a whole, or refused with its response and changes nothing") {
+TEST_CASE("register accesses: each is done completely, or is refused with its response and changes nothing") {
     const MachineSetup setup = setup_for({"", false});
     Bench bench({formats_of(setup)}, design_of(setup), true);
     bench.cpu.program = [&](Processor& cpu) {
@@ -280,7 +280,7 @@ TEST_CASE("register accesses: each is done as a whole, or refused with its respo
     bench.run();
 }
 
-TEST_CASE("while a frame is under way only reset, interrupts and the read index may be written") {
+TEST_CASE("during a frame only reset, interrupts and the read index may be written") {
     const MachineSetup setup = setup_for({"", true});
     Bench bench({formats_of(setup)}, design_of(setup));
     const FramePlaces places = bench.place(setup, 10);
@@ -313,7 +313,7 @@ TEST_CASE("while a frame is under way only reset, interrupts and the read index 
     bench.run();
 }
 
-TEST_CASE("what the driver is refused in the middle of a frame leaves it as it was: the frame's triangles are read") {
+TEST_CASE("driver calls refused during a frame do not change it: the frame's triangles are read") {
     const MachineSetup setup = setup_for({"", true});
     Reference reference("reference", setup);
     Bench bench({formats_of(setup)}, design_of(setup));
@@ -346,7 +346,7 @@ TEST_CASE("what the driver is refused in the middle of a frame leaves it as it w
     expect_same(found, reference.keys);
 }
 
-TEST_CASE("registers of other formats than the device's are not written") {
+TEST_CASE("registers for other formats than the device's are not written") {
     const MachineSetup setup = setup_for({"", false});
     Bench bench({formats_of(setup)}, design_of(setup));
     bench.cpu.program = [&](Processor&) {
@@ -403,7 +403,7 @@ TEST_CASE("debug transport reads all registers, writes plain ones, and starts no
     bench.run();
 }
 
-TEST_CASE("a device that cannot work is refused while it is built") {
+TEST_CASE("an invalid device is refused during construction") {
     const MachineSetup setup = setup_for({"", true});
     const auto refused = [&](DeviceDesign design) {
         return error_of([&] { const Device device("device", setup.registers, design); });

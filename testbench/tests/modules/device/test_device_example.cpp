@@ -8,7 +8,7 @@
 using namespace tessera;
 using namespace tessera::testing;
 
-TEST_CASE("the README's example draws three frames, and is the README's") {
+TEST_CASE("the example draws three frames, and is the code in the README") {
     const MachineSetup setup = setup_of(small_job(true));
     std::vector<MachineSetup> setups(3, setup);
     std::vector<std::unique_ptr<Reference>> references;

@@ -43,7 +43,7 @@ const std::vector<std::string> several{
     ""};
 
 const CaseTable<BenchMode> frames_in_a_row{
-    "several frames in a row, with other thresholds, scales, maps and cameras: ",
+    "several frames in a row, with different thresholds, scales, maps and cameras: ",
     {functional,
      timed,
      {"timed, tables behind caches", true,
@@ -71,7 +71,7 @@ const CaseTable<BenchMode> frames_in_a_row{
     }};
 
 const CaseTable<BenchMode> without_fetch{
-    "tables that are not fetched again are those of the frame before: ",
+    "a frame that does not fetch tables uses those of the frame before: ",
     {functional, timed},
     [](const BenchMode& mode) {
         Frames frames(mode, {"", "tests.normal_threshold=0.3"});
@@ -105,7 +105,7 @@ void expect_reset(tessera_driver& driver, const datapath::Registers& initial) {
     }
 }
 
-const CaseTable<BenchMode> resets{"a reset at any moment of a frame, and the next frame is right: ",
+const CaseTable<BenchMode> resets{"after a reset at any moment of a frame, the next frame is correct: ",
                                   {functional,
                                    timed,
                                    {"timed, spilling", true, "hardware.queue_capacity=8"},
@@ -216,7 +216,7 @@ const CaseTable<BenchMode> interrupts{
     }};
 
 const CaseTable<BenchMode> empty_frame{
-    "a frame of no triangles is done at once: ", {functional, timed}, [](const BenchMode& mode) {
+    "a frame without triangles is done at once: ", {functional, timed}, [](const BenchMode& mode) {
         Frames frames(mode, {""});
         frames.bench->cpu.program = [&](Processor&) {
             tessera_driver& driver = frames.bench->init();
@@ -256,6 +256,6 @@ TEST_CASE("functional mode runs ahead of simulated time by less than the global 
     CHECK(longest < sc_core::sc_time(500, sc_core::SC_NS));
 }
 
-TEST_CASE("timed mode waits each burst's delay out, whatever the quantum") {
+TEST_CASE("timed mode waits for each burst's delay, for any quantum") {
     CHECK(longest_delay(timed) == sc_core::SC_ZERO_TIME);
 }

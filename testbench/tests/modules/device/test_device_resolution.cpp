@@ -46,7 +46,7 @@ TEST_CASE("a device under a time resolution of 1 ps") {
 TEST_CASE("a device under a time resolution of 1 ns, with a period of whole nanoseconds") {
     expect_frames(1, sc_core::SC_NS);
 }
-TEST_CASE("a device under a time resolution of 1 ns, with another period: an error that names it") {
+TEST_CASE("a device under a time resolution of 1 ns, with a period of 2.5 ns: an error names the device") {
     sc_core::sc_set_time_resolution(1, sc_core::SC_NS);
     Job job = small_job(true);
     job.timing.cycle_picoseconds = 2500;

@@ -39,7 +39,7 @@ struct WaitingSink : sc_core::sc_module {
 };
 
 const CaseTable<BenchMode> waiting_sink{
-    "a sink that waits takes its triangles from a buffer: ",
+    "a sink that waits after each triangle gets all from a buffer: ",
     {{"functional", false}, {"timed", true}},
     [](const BenchMode& mode) {
         const MachineSetup setup = setup_of(small_job(mode.timed));
@@ -62,7 +62,7 @@ const CaseTable<BenchMode> waiting_sink{
 
 }  // namespace
 
-TEST_CASE("the default job's bytes on the bus are those of the table in README.md") {
+TEST_CASE("the default job's bytes on the bus match the table in README.md") {
     const Job job = with_settings({}, "mode=functional");
     const MachineSetup setup = setup_of(job);
     Reference reference("reference", setup);

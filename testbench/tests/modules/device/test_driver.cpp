@@ -58,7 +58,7 @@ TEST_CASE("driver: it identifies the device and its register map") {
     CHECK(tessera_init(&driver, &platform) == TESSERA_NO_DEVICE);
 }
 
-TEST_CASE("driver: registers of one and two words, signed and not, read-only and absent") {
+TEST_CASE("driver: registers of one and two words, signed and unsigned, read-only and absent") {
     Words device;
     const tessera_platform platform = device.platform();
     tessera_driver driver;
@@ -82,7 +82,7 @@ TEST_CASE("driver: registers of one and two words, signed and not, read-only and
     CHECK(std::string(tessera_register_name(TESSERA_REGISTERS)) == "no such register");
 }
 
-TEST_CASE("driver: it waits as many polls as it may, and pauses between them") {
+TEST_CASE("driver: it polls up to the limit, and pauses between polls") {
     Words device;
     const tessera_platform platform = device.platform();
     tessera_driver driver;
@@ -99,7 +99,7 @@ TEST_CASE("driver: it waits as many polls as it may, and pauses between them") {
     CHECK(tessera_wait(&driver, 1) == TESSERA_OK);
 }
 
-TEST_CASE("driver: the ring's places follow one another, and its records are words") {
+TEST_CASE("driver: the ring's records are read in order, and word by word") {
     Words device;
     const tessera_platform platform = device.platform();
     tessera_driver driver;
@@ -121,7 +121,7 @@ TEST_CASE("driver: the ring's places follow one another, and its records are wor
     CHECK(count == 0);
 }
 
-TEST_CASE("driver: a bus error in any access of any function is its result") {
+TEST_CASE("driver: every function returns a bus error in any of its accesses") {
     const auto use = [](unsigned failing) {
         Words device;
         device.failing = failing;
@@ -152,7 +152,7 @@ TEST_CASE("driver: a bus error in any access of any function is its result") {
         use(failing);
 }
 
-TEST_CASE("driver: every result has its words") {
+TEST_CASE("driver: every result has a text") {
     std::set<std::string> texts;
     for (int result = TESSERA_NO_REGISTER; result < TESSERA_ERRORS; ++result)
         CHECK(texts.insert(tessera_text(result)).second);

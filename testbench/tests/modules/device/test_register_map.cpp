@@ -80,7 +80,7 @@ TEST_CASE("a register has the same offset in every design") {
     }
 }
 
-TEST_CASE("every register of the machine can be written and arrives, at its least and its greatest value") {
+TEST_CASE("every machine register can be written and reaches the machine, at its least and its greatest value") {
     RegisterFile file(wide(), {});
     for (const bool greatest : {false, true}) {
         for (const DeviceRegister& r : register_map(wide(), {})) {
@@ -105,7 +105,7 @@ TEST_CASE("every register of the machine can be written and arrives, at its leas
     }
 }
 
-TEST_CASE("registers that the device starts with give the machine's registers back") {
+TEST_CASE("a register file returns the machine registers with which it was initialised") {
     datapath::Registers initial = wide();
     std::int64_t next = -3;
     datapath::describe_registers(initial, [&](const datapath::Register& field, auto&... values) {
@@ -134,7 +134,7 @@ TEST_CASE("registers that the device starts with give the machine's registers ba
     CHECK(back.normal_map.entry_bytes == 7);
 }
 
-TEST_CASE("a register drops bits that it does not have, and a negative value reads with its sign") {
+TEST_CASE("a register ignores bits beyond its width, and a negative value reads sign-extended") {
     RegisterFile file({}, {});
     const std::uint32_t width = file.offset_of("map.width"), offset_x = file.offset_of("transform.row_x.offset");
     file.set_word(width, 0xffffffff);
@@ -149,7 +149,7 @@ TEST_CASE("a register drops bits that it does not have, and a negative value rea
     CHECK(file.find(0x01c) == nullptr);
 }
 
-TEST_CASE("records: what is written is read back, and a value beyond its format is refused") {
+TEST_CASE("records: a written record is read back, and a value beyond its format is refused") {
     datapath::Registers registers;
     datapath::Triangle triangle;
     std::int32_t next = 1;
@@ -192,7 +192,7 @@ TEST_CASE("records: what is written is read back, and a value beyond its format 
     CHECK_FALSE(read.corners[2].screen.in_front);
 }
 
-TEST_CASE("the generated files are those of the register map") {
+TEST_CASE("the generated files match the register map") {
     const std::vector<DeviceRegister> registers = documented_registers();
     for (const auto& [name, text] :
          std::map<std::string, std::string>{{"generated/tessera_registers.h", c_header(registers)},

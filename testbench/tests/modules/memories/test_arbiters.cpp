@@ -63,7 +63,7 @@ TEST_CASE("banked ports: several ports of a bank share a request") {
     CHECK(p.ports.occupied_cycles() == 2);
 }
 
-TEST_CASE("banked ports: entry k is in bank k mod banks, and each bank counts for itself") {
+TEST_CASE("banked ports: entry k is in bank k mod banks, and banks work independently") {
     Ports p({1, 4, 1});
     CHECK(p.serve({0, 1, 2, 3}, 10) == 11);
     CHECK(p.serve({0, 4, 8}, 11) == 13 + 1);  // all in bank 0: 11, 12, 13
@@ -85,7 +85,7 @@ TEST_CASE("banked ports: a window lets requests start while others wait for a ba
     CHECK(p.ready({3}) == 14);                // the second
 }
 
-TEST_CASE("banked ports: with exclusive ORs an entry's column and row say which bank is taken") {
+TEST_CASE("banked ports: with exclusive ORs an entry's column and row select its bank") {
     Ports p({1, 4, 1, 0, 1, Interleave::exclusive_or, 0});
     const auto bank = [](unsigned entry) { return BankOfEntry::of(entry % 16, entry / 16, 4); };
     CHECK(p.serve({37}, 10) == 11);
@@ -93,7 +93,7 @@ TEST_CASE("banked ports: with exclusive ORs an entry's column and row say which 
         CHECK(p.ready({entry}) == (bank(entry) == bank(37) ? 11 : 0));
 }
 
-TEST_CASE("banked ports: exclusive-or banks hold the same share of any table, and no entry shares its place") {
+TEST_CASE("banked ports: exclusive-or banks hold equal shares of any table, and each entry has a place of its own") {
     for (const unsigned banks : {2U, 4U, 8U, 16U, 32U, 64U}) {
         CAPTURE(banks);
         std::vector<unsigned> held(banks);
@@ -132,7 +132,7 @@ double cycles_a_rectangle(unsigned banks, std::uint32_t most, bool powers_of_two
 }  // namespace
 
 TEST_CASE(
-    "banked ports: exclusive-or banks conflict less than chance, entry by entry more where sides are powers of 2") {
+    "banked ports: exclusive-or banks conflict less than random ones, banks by entry more for sides of powers of 2") {
     // Four corners in random banks of `banks`: the mean count of the fullest bank.
     for (const auto& [banks, chance] : {std::pair{4U, 2.125}, {8U, 1.65}, {16U, 1.35}}) {
         CAPTURE(banks);
@@ -157,7 +157,7 @@ TEST_CASE("banked ports: a port narrower than an entry takes ceil(bytes / width)
     }
 }
 
-TEST_CASE("channel: ceil(bytes / bandwidth) cycles each, answered a latency after the last byte") {
+TEST_CASE("channel: a request takes ceil(bytes / bandwidth) cycles, its answer comes a latency after the last byte") {
     Channel channel({20, 5, 4});
     CHECK(channel.ready() == 0);
     CHECK(channel.serve(32, 10) == 10 + 7 + 20);
@@ -169,7 +169,7 @@ TEST_CASE("channel: ceil(bytes / bandwidth) cycles each, answered a latency afte
     CHECK(channel.latency() == 20);
 }
 
-TEST_CASE("storage: what was never written is 0, what was is there, and nothing else is covered") {
+TEST_CASE("storage: unwritten bytes are 0, written bytes are kept, and addresses outside are not covered") {
     Storage storage(100, 50);
     for (const auto& [address, length, covered] :
          std::vector<std::array<std::uint64_t, 3>>{{100, 50, 1},
@@ -203,7 +203,7 @@ TEST_CASE("storage: what was never written is 0, what was is there, and nothing 
     CHECK(all[49] == 4);
 }
 
-TEST_CASE("a table with other columns: its entries lie in the banks of those") {
+TEST_CASE("a table with another number of columns uses the banks of its new layout") {
     MemoryTiming timing;
     timing.banks = 4;
     timing.interleave = Interleave::exclusive_or;

@@ -75,7 +75,7 @@ struct Row {
 const CaseTable blocking(
     "bridge: ",
     {
-        Row{"a blocking memory of one cycle is a table of one port and latency 1",
+        Row{"a blocking memory of one cycle behaves as a table of one port and latency 1",
             10,
             gathers(5, 4),
             {14, 18, 22, 26, 30}},
@@ -183,7 +183,7 @@ TEST_CASE("bridge: a memory that completes at once answers in the cycle of the l
     CHECK(bench.memory.responses_ended == 0);
 }
 
-TEST_CASE("bridge: a memory that completes with a delay takes and answers when that is over") {
+TEST_CASE("bridge: a memory that completes with a delay accepts and answers at its end") {
     ScriptedBench bench(Way::completed);
     bench.memory.delay = sc_time(25, SC_PS);  // three cycles
     bench.reader.reads = gathers(3, 2);
@@ -191,7 +191,7 @@ TEST_CASE("bridge: a memory that completes with a delay takes and answers when t
     CHECK(bench.reader.answered == Cycles{16, 22, 28});
 }
 
-TEST_CASE("bridge: an answer by return is ended, once") {
+TEST_CASE("bridge: an answer by return is ended exactly once") {
     ScriptedBench bench(Way::begin_response);
     bench.memory.delay = period;
     bench.reader.reads = gathers(3, 2);
@@ -200,7 +200,7 @@ TEST_CASE("bridge: an answer by return is ended, once") {
     CHECK(bench.memory.responses_ended == 6);
 }
 
-TEST_CASE("bridge: END_REQ by return with a delay: the next entry goes when that is over") {
+TEST_CASE("bridge: END_REQ by return with a delay: the next entry is sent after the delay") {
     ScriptedBench bench(Way::end_request);
     bench.memory.delay = sc_time(20, SC_PS);
     bench.reader.reads = gathers(1, 3);
@@ -217,7 +217,7 @@ TEST_CASE("bridge: END_REQ by return with a delay: the next entry goes when that
     CHECK(bench.reader.answered == Cycles{30});
 }
 
-TEST_CASE("bridge: END_REQ may come later, and its delay counts") {
+TEST_CASE("bridge: END_REQ may come later, and its delay is added") {
     ScriptedBench bench(Way::accepted);
     bench.reader.reads = gathers(1, 2);
     bench.in_cycle(15, [&] {
@@ -232,7 +232,7 @@ TEST_CASE("bridge: END_REQ may come later, and its delay counts") {
     CHECK(bench.reader.answered == Cycles{24});
 }
 
-TEST_CASE("bridge: answers in any order, the reader gets them in the order of its requests") {
+TEST_CASE("bridge: answers may come in any order, the reader gets them in the order of its requests") {
     ScriptedBench bench(Way::end_request, 4);
     bench.reader.reads = gathers(3, 2);  // entries 0 to 5, sent in 10 to 15
     const std::vector<std::size_t> order{5, 1, 2, 4, 0, 3};
@@ -243,7 +243,7 @@ TEST_CASE("bridge: answers in any order, the reader gets them in the order of it
     CHECK(bench.reader.answered == Cycles{60, 70, 70});
 }
 
-TEST_CASE("bridge: a payload that the memory keeps is not used again until it is released") {
+TEST_CASE("bridge: a payload that the memory keeps is not reused until it is released") {
     ScriptedBench bench(Way::end_request);
     bench.reader.reads = gathers(4, 1);
     bench.in_cycle(20, [&] {
@@ -265,7 +265,7 @@ TEST_CASE("bridge: a payload that the memory keeps is not used again until it is
         CHECK(payload->get_ref_count() == 0);
 }
 
-TEST_CASE("bridge: one entry that fails fails its request, and the port says how") {
+TEST_CASE("bridge: one failed entry fails its request, and the port reports the response") {
     ScriptedBench bench(Way::end_request);
     bench.reader.reads = gathers(1, 3);
     bench.in_cycle(20, [&] {
@@ -277,7 +277,7 @@ TEST_CASE("bridge: one entry that fails fails its request, and the port says how
                Contains("reader.port") && Contains("TLM_ADDRESS_ERROR_RESPONSE"));
 }
 
-TEST_CASE("bridge: a memory may answer before the call that asks returns") {
+TEST_CASE("bridge: a memory may answer before the request's call returns") {
     ScriptedBench bench(Way::accepted);
     bench.memory.on_request = [&](Payload& payload) { bench.memory.send_back(payload, tlm::BEGIN_RESP); };
     bench.reader.reads = gathers(3, 2);
@@ -285,14 +285,14 @@ TEST_CASE("bridge: a memory may answer before the call that asks returns") {
     CHECK(bench.reader.answered == Cycles{11, 13, 15});
 }
 
-TEST_CASE("bridge: an answer before the call returns and another by return is an error") {
+TEST_CASE("bridge: an answer before the call returns and another by return are an error") {
     ScriptedBench bench(Way::completed);
     bench.memory.on_request = [&](Payload& payload) { bench.memory.send_back(payload, tlm::BEGIN_RESP); };
     bench.reader.reads = gathers(1, 2);
     CHECK_THAT(error_of([] { sc_core::sc_start(); }), Contains("bridge.to_memory") && Contains("answered twice"));
 }
 
-TEST_CASE("bridge: an answer by return that is none is an error") {
+TEST_CASE("bridge: an invalid answer by return is an error") {
     ScriptedBench bench(Way::begin_request);
     bench.reader.reads = gathers(1, 1);
     CHECK_THAT(error_of([] { sc_core::sc_start(); }),
@@ -303,7 +303,7 @@ namespace {
 TLM_DECLARE_EXTENDED_PHASE(of_its_own);
 }
 
-TEST_CASE("bridge: breaches of a memory are errors that name the bridge's socket, other phases are ignored") {
+TEST_CASE("bridge: a memory's protocol violations are errors that name the bridge's socket, other phases are ignored") {
     ScriptedBench bench(Way::end_request);
     bench.reader.reads = gathers(1, 2);
     Payload stranger;
@@ -392,7 +392,7 @@ struct DirectMemory : sc_core::sc_module {
 
 }  // namespace
 
-TEST_CASE("bridge: debug transport is passed on, all bytes or none") {
+TEST_CASE("bridge: debug transport is forwarded, all bytes or none") {
     Bench bench;
     BlockingMemory memory("memory", period);
     bench.bridge.to_memory.bind(memory.socket);
@@ -407,7 +407,7 @@ TEST_CASE("bridge: debug transport is passed on, all bytes or none") {
     CHECK(other.reader.port.socket->transport_dbg(look) == 0);
 }
 
-TEST_CASE("bridge: functional mode reads entry by entry, then directly until that is withdrawn") {
+TEST_CASE("bridge: functional mode reads entry by entry, then by direct access until it is withdrawn") {
     Bench bench;
     DirectMemory memory("memory");
     bench.bridge.to_memory.bind(memory.socket);
@@ -429,7 +429,7 @@ TEST_CASE("bridge: functional mode reads entry by entry, then directly until tha
     CHECK(memory.accesses == 2);
 }
 
-TEST_CASE("bridge: a pipelined memory is a table of its latency") {
+TEST_CASE("bridge: a pipelined memory behaves as a table of the same latency") {
     Bench bench;
     PipelinedMemory memory("memory", period, 20);
     bench.bridge.to_memory.bind(memory.socket);

@@ -28,7 +28,7 @@ bool access(LineCache& cache, std::uint64_t number) {
 
 }  // namespace
 
-TEST_CASE("line cache: its size in lines, one at least") {
+TEST_CASE("line cache: its size is in whole lines, at least one") {
     for (const auto& [bytes, ways, line_bytes, lines] : std::vector<std::array<unsigned, 4>>{
              {0, 4, 64, 1}, {1, 4, 64, 1}, {64, 4, 64, 1}, {128, 4, 64, 2}, {1024, 4, 64, 16}, {1000, 4, 60, 16}}) {
         CAPTURE(bytes, ways, line_bytes);
@@ -36,7 +36,7 @@ TEST_CASE("line cache: its size in lines, one at least") {
     }
 }
 
-TEST_CASE("line cache: hits are those of a list of each set's lines in the order of their last use") {
+TEST_CASE("line cache: hits match a least-recently-used list per set") {
     Random random(7);
     for (const auto& [sets, ways] :
          std::vector<std::pair<std::uint64_t, unsigned>>{{1, 1}, {1, 4}, {8, 1}, {4, 2}, {5, 3}}) {
@@ -61,7 +61,7 @@ TEST_CASE("line cache: hits are those of a list of each set's lines in the order
     }
 }
 
-TEST_CASE("line cache: a column of a table whose pitch is a power of two lies in all sets") {
+TEST_CASE("line cache: a column of a table whose pitch is a power of two uses all sets") {
     constexpr std::uint64_t sets = 64;
     for (const std::uint64_t pitch : {1U, 2U, 8U, 16U, 32U, 64U, 128U}) {
         CAPTURE(pitch);
@@ -72,7 +72,7 @@ TEST_CASE("line cache: a column of a table whose pitch is a power of two lies in
     }
 }
 
-TEST_CASE("line cache: a line that is being filled is found, and keeps its place") {
+TEST_CASE("line cache: a line being filled is found, and is not evicted") {
     LineCache cache(32, 2, 16);
     LineCache::Line* const first = cache.allocate(10);
     CHECK(cache.find(10) == first);
@@ -84,7 +84,7 @@ TEST_CASE("line cache: a line that is being filled is found, and keeps its place
     CHECK(cache.find(10) == nullptr);
 }
 
-TEST_CASE("a cache that is cleared has no line") {
+TEST_CASE("a cleared cache has no lines") {
     LineCache cache(512, 2, 64);
     for (std::uint64_t number = 0; number < 8; ++number)
         CHECK_FALSE(access(cache, number));

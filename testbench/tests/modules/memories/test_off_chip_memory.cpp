@@ -84,7 +84,7 @@ TEST_CASE("off-chip memory: bandwidth, latency, and one channel for both directi
     CHECK(bench.memory.activity().items_out() == 6);
 }
 
-TEST_CASE("off-chip memory: latency 0, a cycle for what fits into one") {
+TEST_CASE("off-chip memory: latency 0, one cycle for a record as wide as the channel") {
     OffChipBench bench("bench", {0, 32, 1});
     bench.wanted = {{true, 0}, {false, 0}, {true, 0}, {false, 0}};
     bench.run();
@@ -120,13 +120,13 @@ TEST_CASE("off-chip memory: an access beyond its size is an error that names the
     CHECK(bench.answered.size() == 1);
 }
 
-TEST_CASE("off-chip memory: an access that begins beyond its size is an error, too") {
+TEST_CASE("off-chip memory: an access that begins beyond its size is an error") {
     OffChipBench bench("bench", {1, 8, 2});
     bench.wanted = {{false, 1001}};
     CHECK_THAT(error_of([&] { bench.run(); }), Contains("0x3e9") && Contains("TLM_ADDRESS_ERROR_RESPONSE"));
 }
 
-TEST_CASE("off-chip memory: as many answers under way as the latency asks for, in order") {
+TEST_CASE("off-chip memory: a long latency has many answers in flight, in order") {
     CycleScheduler clock("clock", period);
     OffChipMemory memory("memory", clock, {1000, 8, 64}, {}, 1000, 8);
     clock.attach(memory);
@@ -150,7 +150,7 @@ TEST_CASE("off-chip memory: as many answers under way as the latency asks for, i
     CHECK(memory.bytes_read() == 50 * 8);
 }
 
-TEST_CASE("off-chip memory: a command that is neither read nor write, and breaches of an initiator") {
+TEST_CASE("off-chip memory: a command other than read or write, and an initiator's protocol violations") {
     CycleScheduler clock("clock", period);
     OffChipMemory memory("memory", clock, {1, 8, 1}, {}, 1000, 8);
     clock.attach(memory);
@@ -177,7 +177,7 @@ TEST_CASE("off-chip memory: a command that is neither read nor write, and breach
                Contains("memory.socket") && Contains("BEGIN_RESP was not completed"));
 }
 
-TEST_CASE("off-chip memory: b_transport adds the latency, unless there was nothing to be done") {
+TEST_CASE("off-chip memory: b_transport adds the latency, unless the access fails") {
     OffChipBench bench("bench", {20, 5, 4});
     sc_core::sc_start(SC_ZERO_TIME);
     unsigned char data[40] = {7};

@@ -80,26 +80,22 @@ struct Row {
 const CaseTable answers(
     "cache: ",
     {
-        Row{"a line that is not there is fetched", behind({256, 64, 2, 4}), {{0}}, {35}, 1},
-        {"entries of a line under way wait for it, and are no fill", behind({256, 64, 2, 4}), {{0}, {1}}, {35, 36}, 1},
+        Row{"a missing line is fetched", behind({256, 64, 2, 4}), {{0}}, {35}, 1},
+        {"entries of a pending line wait for it, and cause no fill", behind({256, 64, 2, 4}), {{0}, {1}}, {35, 36}, 1},
         // the second line leaves the channel in 18 and arrives in 38
         {"two lines follow each other on the channel", behind({256, 64, 2, 4}), {{0}, {16}}, {35, 39}, 2},
         {"a gather waits for its last line", behind({256, 64, 2, 4}), {{0, 16, 1, 17}}, {42}, 2},
         // {16} is looked up when the first is answered, in 34, and arrives in 58. {0} is found in 34 and read in 36.
-        {"no more requests are looked up than may be under way",
+        {"no more requests are looked up than may be in flight",
          behind({256, 64, 2, 2}),
          {{0}, {1}, {16}, {0}},
          {35, 36, 59, 59},
          2},
         // one line: 16 replaces 0 in 34, 0 replaces 16 in 58
         {"a cache of one line evicts it", behind({1, 64, 4, 4}), {{0}, {16}, {0}}, {35, 59, 83}, 3},
-        {"one line serves a gather of two, one after the other", behind({1, 64, 4, 4}), {{0, 16}}, {60}, 2},
+        {"one line serves a gather from two lines, one after the other", behind({1, 64, 4, 4}), {{0, 16}}, {60}, 2},
         // lines 0 and 3 share a set of one line
-        {"a set that is full evicts, another does not",
-         behind({128, 64, 1, 4}),
-         {{0}, {16}, {48}, {16}},
-         {35, 39, 59, 59},
-         3},
+        {"a full set evicts, another does not", behind({128, 64, 1, 4}), {{0}, {16}, {48}, {16}}, {35, 39, 59, 59}, 3},
         // Only 8 of 10 bytes are whole entries: 1 cycle of the channel
         {"a line holds whole entries", behind({256, 10, 2, 4}), {{0, 1}, {2}}, {33, 34}, 2},
     },
@@ -163,7 +159,7 @@ struct FunctionalRow {
 };
 
 // With direct access only the first read is a transaction.
-const CaseTable functional_reads("cache: functional reads go past it, ",
+const CaseTable functional_reads("cache: functional reads bypass it, ",
                                  {FunctionalRow{"by transaction", false, 256}, {"directly", true, 1}},
                                  [](const FunctionalRow& row) {
                                      Bench bench(behind({64, 64, 1, 1}), {}, row.direct_access);
@@ -190,7 +186,7 @@ TEST_CASE("cache: a write is refused") {
     CHECK(request.response == tlm::TLM_COMMAND_ERROR_RESPONSE);
 }
 
-TEST_CASE("cache: what it holds, in words") {
+TEST_CASE("cache: its requests and pending lines are described") {
     Bench bench(behind({64, 64, 1, 2}));
     bench.reader.reads = {{0}, {1}, {2}};
     sc_core::sc_start(sc_time(20 * 10, SC_PS));

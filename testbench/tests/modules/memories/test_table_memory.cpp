@@ -100,7 +100,7 @@ struct Row {
 const CaseTable answers(
     "memory: ",
     {
-        Row{"one port takes an address a cycle, data come a latency later", timing(1, 1, 1), single_reads(20),
+        Row{"one port takes an address a cycle, data arrive a latency later", timing(1, 1, 1), single_reads(20),
             every(11, 1, 20)},
         {"latency 0 answers in the cycle of the address", timing(1, 1, 0), single_reads(20), every(10, 1, 20)},
         {"latency 100 does not lower the throughput", timing(1, 1, 100), single_reads(60), every(110, 1, 60)},
@@ -113,16 +113,16 @@ const CaseTable answers(
         // nine slots, four per cycle: gather k ends in slot 9 k + 8, in cycle 10 + floor((9 k + 8) / 4)
         {"four ports and gathers of nine share cycles", timing(4, 1, 1), gathers(6, 9), {13, 15, 17, 19, 22, 24}},
         // 4 bytes at 2 per cycle
-        {"a port narrower than an entry takes it in pieces", timing(1, 1, 1, 2), single_reads(10), every(12, 2, 10)},
+        {"a port narrower than an entry reads it in parts", timing(1, 1, 1, 2), single_reads(10), every(12, 2, 10)},
         // 2 cycles per entry, 8 per gather
         {"a width that does not divide the entry rounds up", timing(1, 1, 1, 3), gathers(4, 4), every(18, 8, 4)},
         // 4 bytes at 2 per cycle: entries 0 and 1 in cycles 10 and 11, one on each port
-        {"two narrow ports take two entries in pieces, and no entry in one cycle",
+        {"two narrow ports read two entries in parts, and no entry in one cycle",
          timing(2, 1, 1, 2),
          single_reads(6),
          {12, 12, 14, 14, 16, 16}},
         {"a gather of four through two narrow ports", timing(2, 1, 1, 2), gathers(3, 4), every(14, 4, 3)},
-        {"a port wider than an entry takes one a cycle all the same", timing(1, 1, 1, 64), single_reads(10),
+        {"a port wider than an entry still takes one per cycle", timing(1, 1, 1, 64), single_reads(10),
          every(11, 1, 10)},
         // Entries 0, 1, 2, 3 lie in banks 0, 1, 2, 3: one cycle; 0, 4, 8, 12 all in bank 0: four. Gather 2 occupies
         // bank 0 in cycles 12 to 15. Requests are served in order, as soon as any bank is free: gather 3 from cycle 13
@@ -134,7 +134,7 @@ const CaseTable answers(
         // Bank 0 in 10, 11, 12; without a window {0, 1} waits for it until 13, and {1, 2} for both its banks until 14.
         {"a request waits for each of its banks", timing(1, 4, 1), {{0, 4, 8}, {0, 1}, {1, 2}}, {13, 14, 15}},
         // {0, 1} takes bank 1 in 10 and bank 0 in 13; {1, 2} starts in 13, when the first is complete.
-        {"with a window of two it waits until the request before the last is through",
+        {"with a window of two it waits for the request before the last",
          windowed(4, 2),
          {{0, 4, 8}, {0, 1}, {1, 2}},
          {13, 14, 14}},
@@ -155,7 +155,7 @@ const CaseTable answers(
 
 }  // namespace
 
-TEST_CASE("memory: an idle bank does not let requests past one that is taken") {
+TEST_CASE("memory: a request for an idle bank does not overtake one for a busy bank") {
     // all in bank 0 of two: one per cycle, as with one bank; the buffer (1) leaves the rest waiting at the inputs
     Bench bench(timing(1, 2, 1), 1, {}, 2);
     for (std::uint32_t k = 0; k < 10; ++k)
@@ -183,7 +183,7 @@ TEST_CASE("memory: three readers take turns, none starves") {
     CHECK(bench.reader(2).answered == joined(every(15, 3, 28), {98, 100}));
 }
 
-TEST_CASE("memory: what it holds, in words") {
+TEST_CASE("memory: its requests are described") {
     Bench bench(timing(1, 1, 1), 3);
     for (const auto& reader : bench.readers)
         reader->reads = single_reads(30);
@@ -194,7 +194,7 @@ TEST_CASE("memory: what it holds, in words") {
     CHECK(bench.memory.describe_contents().empty());
 }
 
-TEST_CASE("memory: a reader that comes later gets its turn after at most the others' and the buffer's") {
+TEST_CASE("memory: a late reader waits for at most one request of each other reader and the buffer's") {
     Bench bench(timing(1, 1, 1), 3);
     bench.reader(0).reads = gathers(20, 4);
     bench.reader(1).reads = gathers(20, 4);
@@ -215,7 +215,7 @@ TEST_CASE("memory: a full buffer withholds END_REQ") {
     CHECK(bench.reader().offered == Cycles{10, 10, 10, 14, 18, 22});
 }
 
-TEST_CASE("memory: a buffer of four takes four requests more") {
+TEST_CASE("memory: a buffer of four takes four more requests") {
     Bench bench(timing(1, 1, 1, 0, 4));
     bench.reader().reads = gathers(8, 4);
     bench.run();
@@ -224,7 +224,7 @@ TEST_CASE("memory: a buffer of four takes four requests more") {
     CHECK(bench.reader().answered == every(14, 4, 8));
 }
 
-TEST_CASE("memory: no more requests are under way than the reader has room for") {
+TEST_CASE("memory: a reader has no more requests in flight than its limit") {
     // two in flight, latency 10: a pair in cycles 10 and 11, answered in 20 and 21, each replaced at once
     Bench bench(timing(1, 1, 10), 1, {}, 2);
     bench.reader().reads = single_reads(6);
@@ -232,7 +232,7 @@ TEST_CASE("memory: no more requests are under way than the reader has room for")
     CHECK(bench.reader().answered == Cycles{20, 21, 30, 31, 40, 41});
 }
 
-TEST_CASE("memory: busy from the first address to the last answer, its port as long as it takes addresses") {
+TEST_CASE("memory: busy from the first address to the last answer, a port only while it takes addresses") {
     Bench bench(timing(1, 1, 7), 2);
     bench.reader(0).reads = gathers(9, 4);
     bench.reader(1).reads = single_reads(11);
@@ -254,7 +254,7 @@ TEST_CASE("memory: the mean occupancy is throughput times latency") {
 }
 
 // Gathers of four from entry k. Each side works as if alone: 4 cycles per gather, latency 3 on the second side.
-TEST_CASE("memory: two sides hold one table, and neither side's readers wait for the other's") {
+TEST_CASE("memory: two sides share one table, and neither side's readers wait for the other's") {
     Bench bench(timing(1, 1, 1));
     TableMemory second("second_side", bench.clock, bench.memory, layout, timing(1, 1, 3), {});
     bench.clock.attach(second);
@@ -278,7 +278,7 @@ TEST_CASE("memory: two sides hold one table, and neither side's readers wait for
     CHECK(second.transactions() == 49);
 }
 
-TEST_CASE("memory: random stalls delay answers and change none") {
+TEST_CASE("memory: random stalls delay answers but do not change them") {
     Bench bench(timing(2, 2, 3), 3, {9, 400, 12});
     for (const auto& reader : bench.readers)
         reader->reads = gathers(200, 4);
@@ -289,7 +289,7 @@ TEST_CASE("memory: random stalls delay answers and change none") {
         CHECK(std::is_sorted(reader->answered.begin(), reader->answered.end()));
 }
 
-TEST_CASE("memory: b_transport adds the latency to the delay it is given, and counts alike") {
+TEST_CASE("memory: b_transport adds the latency to the delay it is given, and counts the read") {
     Bench bench(timing(1, 1, 6));
     sc_core::sc_start(sc_core::SC_ZERO_TIME);
     bench.reader().fill(256);

@@ -42,7 +42,7 @@ class Times : public ItemObserver {
 
 }  // namespace
 
-TEST_CASE("schedule: a history remembers as many items as it is asked for, and 0 before the first") {
+TEST_CASE("schedule: a history keeps the requested number of items, and 0 before the first") {
     History history(3);
     CHECK(history[std::uint64_t{0} - 3] == 0);
     for (Cycle cycle = 10; cycle < 20; ++cycle)
@@ -52,7 +52,7 @@ TEST_CASE("schedule: a history remembers as many items as it is asked for, and 0
     CHECK(history[7] == 17);
 }
 
-TEST_CASE("schedule: an input takes an item when one leaves its full buffer") {
+TEST_CASE("schedule: an input with a full buffer takes an item when another leaves") {
     Input input({2, {}});
     CHECK(input.take(5) == 5);
     CHECK(input.take(5) == 5);
@@ -62,7 +62,7 @@ TEST_CASE("schedule: an input takes an item when one leaves its full buffer") {
     CHECK(input.take(30) == 30);
 }
 
-TEST_CASE("schedule: an input's stalls are those of the channel's name") {
+TEST_CASE("schedule: an input's stalls follow from the channel's name") {
     const StallParameters stalls{7, 1000, 9};
     RandomStalls expected(stalls, "channel");
     Input input({1, RandomStalls(stalls, "channel")});
@@ -71,7 +71,7 @@ TEST_CASE("schedule: an input's stalls are those of the channel's name") {
     CHECK(input.take(100) == 100 + stall);
 }
 
-TEST_CASE("schedule: a pipeline starts an item an interval, and none while it is full") {
+TEST_CASE("schedule: a pipeline starts one item per interval, and none while it is full") {
     Pipeline pipeline({6, 2, 1, 3});
     CHECK(pipeline.start(0) == 0);
     CHECK(pipeline.start(0) == 2);
@@ -80,7 +80,7 @@ TEST_CASE("schedule: a pipeline starts an item an interval, and none while it is
     CHECK(pipeline.start(10) == 20);
 }
 
-TEST_CASE("schedule: pipelines side by side take turns") {
+TEST_CASE("schedule: parallel pipelines take turns") {
     Pipeline pipeline({20, 10, 2, 4});
     CHECK(pipeline.start(0) == 0);
     CHECK(pipeline.start(0) == 0);
@@ -88,7 +88,7 @@ TEST_CASE("schedule: pipelines side by side take turns") {
     CHECK(pipeline.start(12) == 12);
 }
 
-TEST_CASE("schedule: states add up, and shares stand in the order of their first stretches") {
+TEST_CASE("schedule: cycles are summed by state, and shares are in the order of first occurrence") {
     States told;
     told.until(5, State::starved);
     told.until(9, State::blocked, 3);
@@ -105,7 +105,7 @@ TEST_CASE("schedule: states add up, and shares stand in the order of their first
     CHECK(told.shares()[2].by == nobody);
 }
 
-TEST_CASE("schedule: a level counts at the end of a cycle, one at least") {
+TEST_CASE("schedule: a level is counted at the end of a cycle, and is at least one") {
     Level level(3);
     level.stay(4, 4);
     CHECK(level.most() == 1);
@@ -119,7 +119,7 @@ TEST_CASE("schedule: a level counts at the end of a cycle, one at least") {
     CHECK(level.item_cycles() == 0 + 4 + 4 + 3 + 4);
 }
 
-TEST_CASE("schedule: a stage's item is starved, busy, waits for memory, and is blocked") {
+TEST_CASE("schedule: a stage is starved, waiting for memory, busy, and blocked in turn") {
     Stage stage({{1, {}}, {3, 1, 1, 2}});
     CHECK(stage.take(4) == 4);
     CHECK(stage.start(0, 6, 9) == 6);  // lacks an operand for two cycles
@@ -143,7 +143,7 @@ TEST_CASE("schedule: a stage's item is starved, busy, waits for memory, and is b
     CHECK(stage.level().most() == 2);
 }
 
-TEST_CASE("schedule: a stage waits for its interval with an item at hand: busy") {
+TEST_CASE("schedule: a stage with an item is busy while it waits for its interval") {
     Stage stage({{1, {}}, {1, 5, 1, 1}});
     stage.take(0);
     stage.start();
@@ -154,7 +154,7 @@ TEST_CASE("schedule: a stage waits for its interval with an item at hand: busy")
     CHECK(stage.states().cycles_in(State::busy) == 1 + 3);
 }
 
-TEST_CASE("schedule: a table with one port reads an entry a cycle, in order") {
+TEST_CASE("schedule: a table with one port reads one entry per cycle, in order") {
     Table table({{1, {}}, 1, 1, 1, 3, 0, 4});
     CHECK(table.request(10, no_banks, 4) == 13 + 3);
     CHECK(table.taken() == 10);
@@ -168,7 +168,7 @@ TEST_CASE("schedule: a table with one port reads an entry a cycle, in order") {
     CHECK(table.ports().states().cycles_in(State::busy) == 8);
 }
 
-TEST_CASE("schedule: a table's narrow port takes several cycles an entry") {
+TEST_CASE("schedule: a table's narrow port takes several cycles per entry") {
     Table table({{1, {}}, 1, 1, 4, 1, 0, 4});
     CHECK(table.request(0, no_banks, 2) == 8);
 }
@@ -246,7 +246,7 @@ TEST_CASE("schedule: below the watermark the host's triangles do not wait for th
     }
 }
 
-TEST_CASE("schedule: last in first out, the newest that has come when one leaves the store") {
+TEST_CASE("schedule: last in first out, the newest triangle present leaves the store") {
     Source source(queue_of(true));
     source.send(1, 0);
     source.next(0);
@@ -261,7 +261,7 @@ TEST_CASE("schedule: last in first out, the newest that has come when one leaves
     CHECK(source.next(26).place == 60);
 }
 
-TEST_CASE("schedule: in a cycle the queue outputs before it takes what Tessellation sends") {
+TEST_CASE("schedule: in each cycle the queue outputs before it takes a triangle from Tessellation") {
     // Until cycle 20 Get Triangle's buffer of one place holds triangle 1, and the queue's output triangle 2. In cycle
     // 20 a third leaves the store, and with an interval of 2 a fourth in cycle 22.
     SourcePlan plan = queue_of(true);
@@ -272,7 +272,7 @@ TEST_CASE("schedule: in a cycle the queue outputs before it takes what Tessellat
     for (std::uint32_t place = 1; place <= 4; ++place)
         source.offer(2 * place, place);
     const auto begun = [&](Cycle free) { return source.next(free).place; };
-    SECTION("a triangle sent in that cycle is not the newest") {
+    SECTION("a triangle sent in the same cycle is not the newest") {
         CHECK(begun(20) == 1);
         CHECK(begun(21) == 2);
         source.offer(22, 5);
@@ -280,14 +280,14 @@ TEST_CASE("schedule: in a cycle the queue outputs before it takes what Tessellat
         CHECK(begun(31) == 3);
         CHECK(begun(40) == 5);
     }
-    SECTION("one sent in the cycle before is") {
+    SECTION("a triangle sent in the cycle before is the newest") {
         CHECK(begun(20) == 1);
         source.offer(21, 5);
         CHECK(begun(21) == 2);
         CHECK(begun(30) == 4);
         CHECK(begun(31) == 5);
     }
-    SECTION("as is one that was sent before and enters the store in that cycle") {
+    SECTION("a triangle sent earlier that enters the store in the same cycle is the newest") {
         source.offer(20, 5);  // before Get Triangle has room
         source.offer(21, 6);  // an interval later, in cycle 22
         CHECK(begun(20) == 1);
@@ -320,7 +320,7 @@ TEST_CASE("schedule: the queue's levels and item times") {
     CHECK(source.states().cycles_in(State::blocked) == 4);
 }
 
-TEST_CASE("schedule: in a cycle the first unit that is due is called, again if something wakes it") {
+TEST_CASE("schedule: in each cycle the first due unit is called, and again if it is woken") {
     using Units = std::vector<unsigned>;
     Calls calls;
     calls.wake_at(4, 7);
@@ -339,7 +339,7 @@ TEST_CASE("schedule: in a cycle the first unit that is due is called, again if s
     CHECK_FALSE(calls.advance());
 }
 
-TEST_CASE("schedule: a unit is called before a cycle that is far off, and no later") {
+TEST_CASE("schedule: a unit with a distant cycle may be called early, but not late") {
     Calls calls;
     for (const Cycle cycle : {Cycle{1000}, Cycle{100'000}, Cycle{100'001}}) {
         for (unsigned early = 0; calls.now() < cycle; ++early) {
@@ -352,7 +352,7 @@ TEST_CASE("schedule: a unit is called before a cycle that is far off, and no lat
     }
 }
 
-TEST_CASE("schedule: a link holds back what its buffer has no place for") {
+TEST_CASE("schedule: a link holds back an item while its buffer is full") {
     Calls calls;
     Link link(calls, {1, {}}, 1, 0);
     CHECK(link.send({7, 3}));

@@ -54,7 +54,7 @@ struct TableBench {
 
 }  // namespace
 
-TEST_CASE("table memory: every response, blocking and non-blocking") {
+TEST_CASE("table memory: every response is the same, blocking and non-blocking") {
     TableBench bench;
     bench.expect(read_of(bench.data, layout.base), tlm::TLM_OK_RESPONSE);
     bench.expect(read_of(bench.data, layout.base + layout.bytes() - 4), tlm::TLM_OK_RESPONSE);
@@ -85,7 +85,7 @@ TEST_CASE("table memory: a gather with one address outside is an address error")
     CHECK(bench.memory.transactions() == 2 * 4);
 }
 
-TEST_CASE("table memory: debug access reads and writes what lies in the table, and nothing else") {
+TEST_CASE("table memory: debug access reads and writes the table, and nothing else") {
     TableBench bench;
     const auto access = [&](tlm::tlm_command command, std::uint64_t address) {
         MemoryRequest request = read_of(bench.data, address);
@@ -108,7 +108,7 @@ TEST_CASE("table memory: debug access reads and writes what lies in the table, a
     CHECK(sc_core::sc_time_stamp() == SC_ZERO_TIME);
 }
 
-TEST_CASE("table memory: the host loads it by the base protocol's debug transport, any number of bytes") {
+TEST_CASE("table memory: the host loads it through the base protocol's debug transport, any number of bytes") {
     CycleScheduler clock("clock", period);
     TableMemory memory("memory", clock, layout, MemoryTiming{}, {});
     struct Host : sc_core::sc_module {
@@ -150,7 +150,7 @@ TEST_CASE("table memory: direct access is granted for reads, over the whole tabl
     CHECK(dmi.get_read_latency() == period);
 }
 
-TEST_CASE("table memory: a plain read takes a port of its own address's bank") {
+TEST_CASE("table memory: a plain read uses a port of its address's bank") {
     CycleScheduler clock("clock", period);
     MemoryTiming timing;
     timing.banks = 2;
@@ -191,7 +191,7 @@ TEST_CASE("table memory: the delay of a request is added before it is served") {
     CHECK(bench.clock.last_cycle() == 4);
 }
 
-TEST_CASE("table memory: breaches of an initiator are errors that name the memory's socket") {
+TEST_CASE("table memory: an initiator's protocol violations are errors that name the memory's socket") {
     TableBench bench;
     MemoryRequest first = read_of(bench.data, layout.base);
     MemoryRequest second = first;
@@ -233,7 +233,7 @@ struct PortBench : sc_core::sc_module {
 
 }  // namespace
 
-TEST_CASE("memory port: exclusion, requests under way, answers in order") {
+TEST_CASE("memory port: one request on offer, several in flight, answers in order") {
     PortBench bench("bench");
     sc_core::sc_start(SC_ZERO_TIME);
     bench.port.request(bench.addresses, 1);
@@ -273,7 +273,7 @@ TEST_CASE("memory port: the delay of an answer is added before the owner is call
     CHECK(bench.called == Cycles{4});
 }
 
-TEST_CASE("memory port: breaches of a memory are errors that name the port") {
+TEST_CASE("memory port: a memory's protocol violations are errors that name the port") {
     PortBench bench("bench");
     sc_core::sc_start(SC_ZERO_TIME);
     Target& target = bench.target;
@@ -299,7 +299,7 @@ TEST_CASE("memory port: breaches of a memory are errors that name the port") {
                Contains("bench.port") && Contains("BEGIN_REQ before END_REQ"));
 }
 
-TEST_CASE("memory port: END_REQ on the backward path and by return is an error") {
+TEST_CASE("memory port: END_REQ both on the backward path and by return is an error") {
     PortBench bench("bench");
     sc_core::sc_start(SC_ZERO_TIME);
     bench.target.on_request = [&](MemoryRequest& request) { bench.target.send_back(request, tlm::END_REQ); };
@@ -310,7 +310,7 @@ TEST_CASE("memory port: END_REQ on the backward path and by return is an error")
     CHECK_FALSE(bench.port.on_offer());
 }
 
-TEST_CASE("memory port: an answer by return that is none is an error") {
+TEST_CASE("memory port: an invalid answer by return is an error") {
     PortBench bench("bench");
     sc_core::sc_start(SC_ZERO_TIME);
     for (const auto& [status, phase] : std::vector<std::pair<tlm::tlm_sync_enum, tlm::tlm_phase>>{
@@ -411,7 +411,7 @@ TEST_CASE("memory port: an error response is an error that names port, address a
                Contains("bench.port") && Contains("0x6c") && Contains("TLM_ADDRESS_ERROR_RESPONSE"));
 }
 
-TEST_CASE("memory port: a memory that forgets the response status is an error") {
+TEST_CASE("memory port: a response without a status is an error") {
     PortBench bench("bench");
     sc_core::sc_start(SC_ZERO_TIME);
     bench.port.request(bench.addresses, 1);

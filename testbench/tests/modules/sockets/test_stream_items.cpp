@@ -140,7 +140,7 @@ std::string table_of() {
 
 }  // namespace
 
-TEST_CASE("every stream's item goes through its packed form and back, in any formats") {
+TEST_CASE("every stream's item survives packing and unpacking, in any formats") {
     Random random(11);
     for (const datapath::Formats& formats : {datapath::Formats{}, narrow_formats(), widest_formats()}) {
         for (const int tag : {1, 6, 32}) {
@@ -154,7 +154,7 @@ TEST_CASE("every stream's item goes through its packed form and back, in any for
     }
 }
 
-TEST_CASE("a value that its field cannot hold is told when it is packed") {
+TEST_CASE("packing reports a value that its field cannot hold") {
     BasePoint point;
     const datapath::Formats formats = narrow_formats();
     PackedItem packed;
@@ -170,7 +170,7 @@ TEST_CASE("a value that its field cannot hold is told when it is packed") {
 }
 
 // 32 * 3 for a position, 16 * 3 for a normal, 25 * 2 for a texture coordinate, 24 * 2 + 32 + 1 on the screen, 4 a part.
-TEST_CASE("widths of items in the default formats, by hand") {
+TEST_CASE("widths of items in the default formats, added up by hand") {
     const datapath::Formats formats;
     CHECK(item_bits<BasePoint>(formats, 6) == 6 + 4 + 96 + 48 + 50);
     CHECK(item_bits<ScreenPoint>(formats, 6) == 6 + 4 + 96 + 48 + 50 + 96 + 81);
@@ -191,7 +191,7 @@ TEST_CASE("widths of items in the default formats, with a Highlight Test") {
 }
 
 // A value outside the item's description, here the set of new vertices, is not transferred.
-TEST_CASE("an output sends its items through their packed form where the design says so, in both modes") {
+TEST_CASE("an output sends its items packed if the design requires it, in both modes") {
     using testing::Sink;
     CycleScheduler clock("clock", sc_core::sc_time(10, sc_core::SC_PS));
     testing::Caller unit(clock);
@@ -239,7 +239,7 @@ TEST_CASE("an output sends its items through their packed form where the design 
 
 // One triangle in Get Triangle; in Calculate New P, Displace Vertex and Transform one place at the input and 1, 7
 // (including the map's cycle) and 20 register stages; one at Pass or Tessellate's input; and its 8 places.
-TEST_CASE("a tag tells apart all triangles between Get Triangle and Pass or Tessellate") {
+TEST_CASE("a tag distinguishes all triangles between Get Triangle and Pass or Tessellate") {
     Design design;
     CHECK(triangles_ahead_of_parts(design) == 1 + (1 + 1) + (1 + 7) + (1 + 20) + 1);
     CHECK(tag_bits(design) == 6);  // 33, one offered, and 8

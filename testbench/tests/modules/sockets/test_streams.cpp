@@ -136,7 +136,7 @@ TEST_CASE("stream output: the delay of nb_transport_bw is added before its owner
     CHECK(offerer.called == std::vector<std::uint64_t>{14});
 }
 
-TEST_CASE("stream output: END_REQ by return leaves it free, and its owner is not called for it") {
+TEST_CASE("stream output: END_REQ by return leaves it free, and does not call its owner") {
     Offerer offerer("offerer");
     StreamOutput<int>& out = offerer.out;
     BareTarget<int> target("target");
@@ -151,7 +151,7 @@ TEST_CASE("stream output: END_REQ by return leaves it free, and its owner is not
     CHECK(offerer.called.empty());
 }
 
-TEST_CASE("stream output: deliver offers an item once, and says once that it is taken") {
+TEST_CASE("stream output: deliver offers an item once, and reports once that it is taken") {
     Offerer offerer("offerer");
     StreamOutput<int>& out = offerer.out;
     BareTarget<int> target("target");
@@ -170,7 +170,7 @@ TEST_CASE("stream output: deliver offers an item once, and says once that it is 
     CHECK_FALSE(out.deliver(item));
 }
 
-TEST_CASE("stream: one item a cycle is never taken twice, lost or reordered behind a consumer of one place") {
+TEST_CASE("stream: no item is duplicated, lost or reordered before a consumer of one place") {
     // The consumer takes an item in every cycle in which it is called; producer and consumer have no latency: all 100
     // items are transferred in the cycle in which they are offered, one at a time.
     CycleScheduler clock("clock", period);
@@ -184,7 +184,7 @@ TEST_CASE("stream: one item a cycle is never taken twice, lost or reordered behi
     CHECK(clock.last_cycle() == 0);
 }
 
-TEST_CASE("stream: an item that is always stalled one cycle comes through every cycle") {
+TEST_CASE("stream: items that are each stalled for one cycle pass one per cycle") {
     // longest = 1 and 1000 per mille: item k is offered when item k - 1 is taken, in cycle k, and taken in cycle k + 1
     CycleScheduler clock("clock", period);
     Sink<int> sink("sink", clock, {1, 1000, 1});
@@ -197,7 +197,7 @@ TEST_CASE("stream: an item that is always stalled one cycle comes through every 
         REQUIRE(sink.cycles[k] == k + 1);
 }
 
-TEST_CASE("stream: random stalls hold back the share of items asked for, for up to the longest time") {
+TEST_CASE("stream: random stalls delay the requested share of items, for up to the longest time") {
     CycleScheduler clock("clock", period);
     Sink<int> sink("sink", clock, {42, 300, 8});
     Driver<int> driver("driver", clock);
@@ -238,7 +238,7 @@ TEST_CASE("stream: stalls depend on the seed and the channel, and on nothing els
         REQUIRE(never.next() == 0);
 }
 
-TEST_CASE("stream: every breach of a producer is an error that names the consumer's socket") {
+TEST_CASE("stream: every protocol violation of a producer is an error that names the consumer's socket") {
     Holder holder("holder", 1);
     BareInitiator<int> producer("producer"), second("second");
     Functional functional("functional");
@@ -263,7 +263,7 @@ TEST_CASE("stream: every breach of a producer is an error that names the consume
                Contains("functional.in") && Contains("nb_transport in functional mode"));
 }
 
-TEST_CASE("stream: every breach of a consumer is an error that names the producer's socket") {
+TEST_CASE("stream: every protocol violation of a consumer is an error that names the producer's socket") {
     Offerer offerer("offerer");
     StreamOutput<int>& out = offerer.out;
     BareTarget<int> target("target");
@@ -296,7 +296,7 @@ TEST_CASE("stream: every breach of a consumer is an error that names the produce
                Contains("offerer.out"));  // for an item that was not offered
 }
 
-TEST_CASE("stream: no memory, so neither direct nor debug access") {
+TEST_CASE("stream: it has neither direct nor debug access") {
     CycleScheduler clock("clock", period);
     Sink<int> sink("sink", clock);
     Offerer offerer("offerer");
@@ -310,7 +310,7 @@ TEST_CASE("stream: no memory, so neither direct nor debug access") {
     CHECK(sink.items.empty());
 }
 
-TEST_CASE("stream: who is behind a socket") {
+TEST_CASE("stream: the module behind a socket is found") {
     struct NoObject : sc_core::sc_interface {
     } no_object;
     struct Channel : sc_core::sc_module, sc_core::sc_interface {
@@ -329,7 +329,7 @@ TEST_CASE("stream: who is behind a socket") {
     CHECK(offerer.out.consumer() == &sink);
 }
 
-TEST_CASE("stream: b_transport adds to the delay it is given") {
+TEST_CASE("stream: b_transport passes on the delay it is given") {
     CycleScheduler clock("clock", period);
     Sink<int> sink("sink", clock);
     Offerer offerer("offerer");

@@ -43,7 +43,7 @@ struct ForkBench : sc_core::sc_module {
 
 }  // namespace
 
-TEST_CASE("activity: cycles by state, and by whom it was blocked or waited for") {
+TEST_CASE("activity: cycles by state, and by the neighbour that blocks or is awaited") {
     Neighbour a("a"), b("b");
     Activity activity;
     activity.set(10, State::blocked, &a);
@@ -69,7 +69,7 @@ TEST_CASE("activity: cycles by state, and by whom it was blocked or waited for")
     CHECK(share(State::waiting_for_memory, b) == 0);
 }
 
-TEST_CASE("activity: more neighbours than it can tell apart are an error, none is added to another") {
+TEST_CASE("activity: more neighbours than the limit are an error, none is counted as another") {
     std::vector<std::unique_ptr<Neighbour>> neighbours;
     Activity activity;
     const auto visit_all = [&] {
@@ -85,7 +85,7 @@ TEST_CASE("activity: more neighbours than it can tell apart are an error, none i
         CHECK(share.cycles == 1);
 }
 
-TEST_CASE("level history: the highest level of each stretch, stretches double") {
+TEST_CASE("level history: the highest level of each stretch, stretches double in length") {
     LevelHistory history;
     history.finish(0);
     CHECK(history.highest().empty());
@@ -104,7 +104,7 @@ TEST_CASE("level history: the highest level of each stretch, stretches double") 
     CHECK(history.highest().back() == 3);
 }
 
-TEST_CASE("fork: says who holds it up, and has four outputs at most") {
+TEST_CASE("fork: reports the consumer that blocks it, and has at most four outputs") {
     ForkBench bench("bench");
     sc_core::sc_start(sc_core::SC_ZERO_TIME);
     for (std::size_t k = 0; k < 4; ++k)
@@ -125,7 +125,7 @@ TEST_CASE("fork: says who holds it up, and has four outputs at most") {
     CHECK(bench.fork.deliver(item));
 }
 
-TEST_CASE("fork: an output gets the parts that it is for, and of them what it needs, in both modes") {
+TEST_CASE("fork: an output gets only its parts, and only the fields it needs, in both modes") {
     struct Bench : sc_core::sc_module {
         StreamOutput<ScreenPoint> all{"all"}, edges{"edges"};
         StreamOutput<ScreenCorner> vertices{"vertices"};
@@ -168,7 +168,7 @@ TEST_CASE("fork: an output gets the parts that it is for, and of them what it ne
     CHECK(vertices.items.front().screen.x == 5);
 }
 
-TEST_CASE("per triangle: found by tag, closed in any order, and it grows") {
+TEST_CASE("per triangle: entries are found by tag, closed in any order, and the store grows") {
     PerTriangle<int> kept(2);
     CHECK(kept.find(7) == nullptr);
     kept.open(7) = 70;
@@ -188,7 +188,7 @@ TEST_CASE("per triangle: found by tag, closed in any order, and it grows") {
     CHECK(kept.find_or_open(7) == 0);  // opened again
 }
 
-TEST_CASE("unit numbers: the units of a machine, anything else is other, nothing is nobody") {
+TEST_CASE("unit numbers: a machine's units have their own, any other object is other, null is nobody") {
     Neighbour transform("transform"), stranger("stranger");
     struct Machine : sc_core::sc_module {
         Neighbour lighting{"lighting"};

@@ -34,7 +34,7 @@ struct Three {
 
 }  // namespace
 
-TEST_CASE("clock: within a cycle the order is that of attachment") {
+TEST_CASE("clock: within a cycle units are called in the order of attachment") {
     Three t;
     t.clock.wake_at(t.c, 5);
     t.clock.wake_at(t.a, 5);
@@ -47,7 +47,7 @@ TEST_CASE("clock: within a cycle the order is that of attachment") {
     CHECK(sc_core::sc_time_stamp() == sc_time(50, SC_PS));
 }
 
-TEST_CASE("clock: a unit woken in the present cycle is called in it, an earlier one first") {
+TEST_CASE("clock: a unit woken in the current cycle is called in it, units attached earlier first") {
     Three t;
     int woken = 0;
     t.b.on_step = [&] {
@@ -64,7 +64,7 @@ TEST_CASE("clock: a unit woken in the present cycle is called in it, an earlier 
     CHECK(t.calls == Calls{{'b', 7}, {'a', 7}, {'c', 7}, {'b', 8}});
 }
 
-TEST_CASE("clock: cycles nobody asked for are skipped, near and far") {
+TEST_CASE("clock: cycles without a wake-up are skipped, near and far") {
     Three t;
     // the table covers 1024 cycles from the first; both sides of its limit, and of the second turn's
     const std::vector<std::uint64_t> asked{0, 1, 63, 64, 65, 1022, 1023, 1024, 1025, 2047, 2048, 5000, 1'000'000};
@@ -82,7 +82,7 @@ TEST_CASE("clock: cycles nobody asked for are skipped, near and far") {
     CHECK(sc_core::sc_time_stamp() == sc_time(10'000'000, SC_PS));
 }
 
-TEST_CASE("clock: wake-ups from within a cycle reach every distance") {
+TEST_CASE("clock: wake-ups from within a cycle work at every distance") {
     // each call requests the next, a given distance ahead; a distant request must not be called one turn of the table
     // early, nor be lost when it comes within the table's range
     Three t;
@@ -118,7 +118,7 @@ TEST_CASE("clock: many far wake-ups of several units come in order") {
     CHECK(t.calls == expected);
 }
 
-TEST_CASE("clock: from outside a cycle a unit is woken in the first that begins not before now") {
+TEST_CASE("clock: a unit woken from outside a cycle is called in the first cycle that begins at or after now") {
     Three t;
     sc_core::sc_start(sc_time(41, SC_PS));  // within the fifth cycle: number 4 began at 40
     CHECK(t.calls.empty());
@@ -149,7 +149,7 @@ TEST_CASE("clock: after a long pause near and far wake-ups from outside come in 
     CHECK(t.calls == Calls{{'a', 3}, {'c', 5010}, {'a', 6023}, {'b', 6024}, {'b', 7500}});
 }
 
-TEST_CASE("clock: delays count in cycles, rounded up") {
+TEST_CASE("clock: delays are counted in cycles, rounded up") {
     Three t;
     CHECK(t.clock.cycles(sc_core::SC_ZERO_TIME) == 0);
     CHECK(t.clock.cycles(sc_time(1, SC_PS)) == 1);
@@ -166,7 +166,7 @@ TEST_CASE("clock: two units that wake one another for ever are an error, not a h
     CHECK_THAT(error_of([] { sc_core::sc_start(); }), Catch::Contains("a cycle does not end"));
 }
 
-TEST_CASE("clock: a busy cycle below the bound is none") {
+TEST_CASE("clock: a busy cycle below the bound of calls is not an error") {
     Three t;
     unsigned calls = 0;
     t.a.on_step = [&] {
@@ -178,7 +178,7 @@ TEST_CASE("clock: a busy cycle below the bound is none") {
     CHECK(calls == CycleScheduler::calls_in_a_cycle);
 }
 
-TEST_CASE("clock: without progress for a bound it stops the simulation, with progress it does not") {
+TEST_CASE("clock: it stops the simulation after the bound without progress, and not before") {
     Three t;
     // progress in cycle 100, none later; b is woken in every cycle and would continue for ever
     t.clock.halt_without_progress_for(50);
@@ -193,7 +193,7 @@ TEST_CASE("clock: without progress for a bound it stops the simulation, with pro
     CHECK(t.clock.last_cycle() == 151);  // the first with more than 50 cycles since 100
 }
 
-TEST_CASE("clock: running out of things to do is no lack of progress") {
+TEST_CASE("clock: running out of work is not a lack of progress") {
     Three t;
     t.clock.halt_without_progress_for(50);
     t.clock.wake_at(t.a, 50);
@@ -203,7 +203,7 @@ TEST_CASE("clock: running out of things to do is no lack of progress") {
 }
 
 TEST_CASE(
-    "clock: ahead of simulated time it calls the same units, waits for other processes, and ends when it should") {
+    "clock: ahead of simulated time it calls the same units, waits for other processes, and ends at the same time") {
     struct Other : sc_core::sc_module {
         const Three& t;
         std::vector<std::pair<sc_time, std::size_t>> calls;  // the time, and how many calls of units had been made
@@ -261,7 +261,7 @@ struct LongClock {
 
 }  // namespace
 
-TEST_CASE("clock: a cycle beyond the end of simulated time stops the simulation, it does not come early") {
+TEST_CASE("clock: a cycle beyond the end of simulated time stops the simulation, and is not called early") {
     LongClock t;
     t.a.on_step = [&] {
         t.clock.wake_at(t.b, 15);
@@ -274,14 +274,14 @@ TEST_CASE("clock: a cycle beyond the end of simulated time stops the simulation,
     CHECK_FALSE(t.clock.stalled());
 }
 
-TEST_CASE("clock: a cycle beyond the end of simulated time cannot be asked for from outside either") {
+TEST_CASE("clock: a cycle beyond the end of simulated time cannot be requested from outside a cycle") {
     LongClock t;
     t.clock.wake_at(t.b, 16);
     CHECK(t.clock.idle());
     CHECK(t.clock.out_of_time());
 }
 
-TEST_CASE("clock: idle when nobody asked for a cycle, and not within one") {
+TEST_CASE("clock: idle without pending wake-ups, and not within a cycle") {
     Three t;
     CHECK(t.clock.idle());
     t.clock.wake_at(t.a, 3);
@@ -293,7 +293,7 @@ TEST_CASE("clock: idle when nobody asked for a cycle, and not within one") {
     CHECK(t.clock.idle());
 }
 
-TEST_CASE("clock: 64 units, and an error for the next") {
+TEST_CASE("clock: 64 units are attached, and the next is an error") {
     CycleScheduler clock("clock", sc_time(10, SC_PS));
     std::vector<std::unique_ptr<Caller>> callers;
     std::vector<int> order;

@@ -9,7 +9,7 @@
 
 using namespace tessera;
 
-TEST_CASE("ring: items leave in the order they came, round and round") {
+TEST_CASE("ring: items leave in the order they came, over several turns") {
     Ring<int> ring(3);
     CHECK(ring.capacity() == 3);
     CHECK(ring.empty());
@@ -34,7 +34,7 @@ TEST_CASE("ring: items leave in the order they came, round and round") {
     CHECK(ring.back() == pushed - 1);  // the last one, although it has left
 }
 
-TEST_CASE("ring: grown, it has twice the places and its items in their order") {
+TEST_CASE("ring: growing doubles the capacity, and keeps the items in order") {
     Ring<int> ring(3);
     for (int k = 0; k < 3; ++k)
         ring.push(k);
@@ -67,7 +67,7 @@ TEST_CASE("ring: a capacity of one") {
     }
 }
 
-TEST_CASE("ring: at both ends") {
+TEST_CASE("ring: items are pushed and popped at both ends") {
     Ring<int> ring(3);
     ring.push(1);
     ring.push_front() = 0;  // before the first slot
@@ -82,13 +82,13 @@ TEST_CASE("ring: at both ends") {
     CHECK(ring.size() == 2);
 }
 
-TEST_CASE("ring: a capacity of none is full and empty") {
+TEST_CASE("ring: without capacity it is both full and empty") {
     const Ring<int> ring;
     CHECK(ring.empty());
     CHECK(ring.full());
 }
 
-TEST_CASE("ring: places keep what they own, and a pushed place is as it was left") {
+TEST_CASE("ring: slots keep what they own, and a reused slot is as it was left") {
     struct Slot {
         std::unique_ptr<int> owned = std::make_unique<int>(0);  // not copied
     };

@@ -17,7 +17,7 @@ TEST_CASE("time resolution 1 ns: a period of whole nanoseconds is exact") {
     CHECK(clock_period("machine", 5000) == sc_time(5, sc_core::SC_NS));
 }
 
-TEST_CASE("time resolution 1 ns: another period is an error that says what to do") {
+TEST_CASE("time resolution 1 ns: any other period is an error that names the remedy") {
     sc_core::sc_set_time_resolution(1, sc_core::SC_NS);
     for (const unsigned picoseconds : {1u, 999u, 2500u, 5001u})
         CHECK_THAT(error_of([&] { clock_period("machine", picoseconds); }),
@@ -30,7 +30,7 @@ TEST_CASE("time resolution 10 s: no period is a multiple of that") {
     CHECK_THAT(error_of([] { clock_period("machine", 5000); }), Contains("10 s"));
 }
 
-TEST_CASE("time resolution 1 ns: a machine refuses the period, in its own name") {
+TEST_CASE("time resolution 1 ns: a machine refuses a period of 2.5 ns, and the error names it") {
     sc_core::sc_set_time_resolution(1, sc_core::SC_NS);
     Job job = full_split_job(1, 1);
     job.timing.cycle_picoseconds = 2500;
@@ -53,9 +53,9 @@ void expect_time(double resolution, sc_core::sc_time_unit unit) {
 
 }  // namespace
 
-TEST_CASE("time resolution 1 fs: a run lasts its cycles") {
+TEST_CASE("time resolution 1 fs: a run lasts its cycles times the period") {
     expect_time(1, sc_core::SC_FS);
 }
-TEST_CASE("time resolution 1 ns: a run lasts its cycles") {
+TEST_CASE("time resolution 1 ns: a run lasts its cycles times the period") {
     expect_time(1, sc_core::SC_NS);
 }

@@ -107,7 +107,7 @@ TEST_CASE("Normal Test unit without a Highlight Test: 10 cycles with the read") 
     CHECK(bench.tests() == without_highlight);
 }
 
-TEST_CASE("Normal Test unit with a Highlight Test: one cycle more, an edge a cycle still") {
+TEST_CASE("Normal Test unit with a Highlight Test: one more cycle, still one edge per cycle") {
     Bench bench(true, {});
     CHECK(bench.run_timed() == std::vector<std::uint64_t>{11, 12, 13});
     const int both = datapath::normal_bit | datapath::highlight_bit;
@@ -121,7 +121,7 @@ TEST_CASE("Normal Test unit with a Highlight Test of 7 cycles") {
     CHECK(bench.run_timed() == std::vector<std::uint64_t>{17, 18, 19});
 }
 
-TEST_CASE("Normal Test unit with a Highlight Test, blocking transport: the same bits, one cycle more") {
+TEST_CASE("Normal Test unit with a Highlight Test, blocking transport: the same bits, one more cycle") {
     Bench bench(true, {});
     bench.registers.tests.normal_threshold = 16384;  // so that only the Highlight Test can ask for a split
     sc_core::sc_start(sc_core::SC_ZERO_TIME);

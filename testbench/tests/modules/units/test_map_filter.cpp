@@ -119,8 +119,8 @@ const std::initializer_list<Row> rows{
     {"one port", false, datapath::AddressMode::clamp, {}, {}},
     {"four banks, latency 20", false, datapath::AddressMode::repeat, {1, 4, 20}, {}},
     {"random stalls", false, datapath::AddressMode::repeat, {1, 1, 3}, {3, 400, 9}},
-    {"of families, two ports", true, datapath::AddressMode::clamp, {2}, {}},
-    {"of families, random stalls", true, datapath::AddressMode::repeat, {2, 2, 5}, {4, 300, 20}}};
+    {"with families, two ports", true, datapath::AddressMode::clamp, {2}, {}},
+    {"with families, random stalls", true, datapath::AddressMode::repeat, {2, 2, 5}, {4, 300, 20}}};
 
 const CaseTable displaced("a bilinear filter in Displace Vertex, ", rows, [](const Row& row) {
     Bench bench(row);

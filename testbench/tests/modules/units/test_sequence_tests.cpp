@@ -175,11 +175,11 @@ void run_all_combinations(const Timing& timing) {
 
 }  // namespace
 
-TEST_CASE("every combination of tests: an edge goes to those that its decision depends on, and leaves in order") {
+TEST_CASE("every combination of tests: an edge goes only to tests that its decision depends on, and leaves in order") {
     run_all_combinations({});
 }
 
-TEST_CASE("every combination of tests, with a place for one edge") {
+TEST_CASE("every combination of tests, with buffers for one edge") {
     Timing timing;
     timing.edges_in_sequence = timing.results_buffer = 1;
     run_all_combinations(timing);
@@ -192,7 +192,7 @@ TEST_CASE("every combination of tests, with random stalls") {
     run_all_combinations(timing);
 }
 
-TEST_CASE("a design without a Summed Height Test never asks for it") {
+TEST_CASE("a design without a Summed Height Test never requests it") {
     Bench bench;
     bench.registers.tests.summed_height_test = false;
     bench.add_edge(datapath::gating_tests);
@@ -203,7 +203,7 @@ TEST_CASE("a design without a Summed Height Test never asks for it") {
 }
 
 // All operands are present in cycle 0; the unit takes an edge per cycle. The stubs take 5 and 7 cycles.
-TEST_CASE("an edge's cycles are those of the tests it goes to, one after another") {
+TEST_CASE("an edge takes the cycles of its tests, one after another") {
     const unsigned gates = datapath::gating_tests;
     Bench bench;
     for (const unsigned tests : {0U, datapath::normal_bit | gates, gates, 0U})
@@ -213,7 +213,7 @@ TEST_CASE("an edge's cycles are those of the tests it goes to, one after another
     CHECK(bench.sink.cycles == std::vector<std::uint64_t>{0, 1 + 5, 2 + 5 + 7, 2 + 5 + 7 + 1});
 }
 
-TEST_CASE("blocking transport: the same decisions, and the tests' latencies one after another") {
+TEST_CASE("blocking transport: the same decisions, and the sum of the tests' latencies") {
     Bench bench;
     sc_core::sc_start(sc_core::SC_ZERO_TIME);
     for (unsigned k = 0; k < 2 * combinations; ++k)
@@ -242,14 +242,14 @@ TEST_CASE("operands and results of different edges are an error") {
     CHECK_THROWS_WITH(sc_core::sc_start(), Catch::Contains("the tests decided different edges"));
 }
 
-TEST_CASE("an answer of another edge than the one asked is an error") {
+TEST_CASE("an answer for another edge than the requested one is an error") {
     Bench bench;
     bench.normal_test.answers_for = 17;
     bench.add_edge(datapath::gating_tests);
     CHECK_THROWS_WITH(sc_core::sc_start(), Catch::Contains("a test decided an edge that it was not asked for"));
 }
 
-TEST_CASE("an answer that was not asked for is an error") {
+TEST_CASE("an answer without a request is an error") {
     Bench bench;
     bench.add_edge(0);
     NormalResult result;

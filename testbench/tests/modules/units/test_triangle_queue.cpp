@@ -93,7 +93,7 @@ TEST_CASE("triangle queue: first in first out, through off-chip memory and back"
     }
 }
 
-TEST_CASE("triangle queue: last in first out, through off-chip memory and back, none is lost or doubled") {
+TEST_CASE("triangle queue: last in first out, through off-chip memory and back, no triangle is lost or duplicated") {
     CycleScheduler clock("clock", sc_core::sc_time(5, sc_core::SC_NS));
     const datapath::Registers registers;
     std::vector<std::unique_ptr<Bench>> benches;
@@ -130,7 +130,7 @@ TEST_CASE("triangle queue: a triangle that does not fit its record is an error, 
 }
 
 // The queue's output is not taken for far longer than the test runs.
-TEST_CASE("triangle queue: the host may send while fewer triangles wait than the watermark says") {
+TEST_CASE("triangle queue: the host may send while fewer triangles wait than the watermark") {
     CycleScheduler clock("clock", sc_core::sc_time(5, sc_core::SC_NS));
     const datapath::Registers registers;
     std::vector<std::unique_ptr<Bench>> benches;

@@ -62,7 +62,7 @@ TakenTriangle taken(Tag tag, bool base) {
 
 }  // namespace
 
-TEST_CASE("pass or tessellate: a pass waits for its other branch, in functional mode too") {
+TEST_CASE("pass or tessellate: a pass waits for its other branch, also in functional mode") {
     JoinBench bench;
     const TakenTriangle triangle = taken(0, false);
     CHECK(bench.unit.joined());
@@ -75,7 +75,7 @@ TEST_CASE("pass or tessellate: a pass waits for its other branch, in functional 
     CHECK(bench.unit.counts().passes == 1);
 }
 
-TEST_CASE("pass or tessellate: a part of a triangle that did not come, or that comes twice, is an error") {
+TEST_CASE("pass or tessellate: a part of an absent triangle, or one that comes twice, is an error") {
     JoinBench bench;
     const TakenTriangle triangle = taken(0, false);
     const TakenTriangle other = taken(1, false);
@@ -94,7 +94,7 @@ TEST_CASE("pass or tessellate: a part of a triangle that did not come, or that c
     CHECK(bench.unit.counts().passes == 0);
 }
 
-TEST_CASE("pass or tessellate: in functional mode a triangle may overtake another that waits outside") {
+TEST_CASE("pass or tessellate: in functional mode a triangle may overtake another that waits for parts") {
     JoinBench bench;
     const TakenTriangle first = taken(4, true), second = taken(5, true);  // so that both go to Tessellation
     for (const TakenTriangle& triangle : {first, second}) {
