@@ -248,7 +248,8 @@ constexpr void describe_triangle(Fields<Codec>& fields, AnyTriangle& triangle) {
         auto& midpoint = triangle.midpoints[static_cast<std::size_t>(k)];
         fields.midpoint_direction("midpoint_n", midpoint.normal, "N of edge k's midpoint, if it is split");
         fields.midpoint_direction("midpoint_tangent", midpoint.tangent, "T of edge k's midpoint, if it is split");
-        fields.midpoint_direction("midpoint_displaced_n", midpoint.displaced_normal, "N' of edge k's midpoint, if it is split");
+        fields.midpoint_direction("midpoint_displaced_n", midpoint.displaced_normal,
+                                  "N' of edge k's midpoint, if it is split");
     }
     fields.of(-1);
     fields.annotation("base", triangle.base);

@@ -86,7 +86,8 @@ constexpr void describe_registers(AnyRegisters& r, Visit&& visit) {
     field("transform.view_distance_shift", number, 5, "shift: fraction bits of the position minus those of w", shift);
     if constexpr (!std::is_const_v<AnyRegisters>)
         r.formats.view_distance.fraction = f.position.fraction - shift;
-    field("transform.near_plane", number, 63, "w before rounding, in the format of row_w's result", r.transform.near_plane);
+    field("transform.near_plane", number, 63, "w before rounding, in the format of row_w's result",
+          r.transform.near_plane);
     auto& n = r.transform.normal_rows;
     field("transform.normal_rows", with_sign, f.normal.bits, "world to view, normal's format", n[0][0], n[0][1],
           n[0][2], n[1][0], n[1][1], n[1][2], n[2][0], n[2][1], n[2][2]);
@@ -114,7 +115,8 @@ constexpr void describe_registers(AnyRegisters& r, Visit&& visit) {
     if (f.height_test == HeightTest::curvature) {
         field("curvature_table.columns", number, map_side_bits, "columns that the Curvature Table covers, texels",
               r.covered.columns);
-        field("curvature_table.rows", number, map_side_bits, "rows that the Curvature Table covers, texels", r.covered.rows);
+        field("curvature_table.rows", number, map_side_bits, "rows that the Curvature Table covers, texels",
+              r.covered.rows);
         field("tests.curvature_threshold", number, curvature_threshold_bits(f), "codes times texels, 3 fraction bits",
               r.tests.curvature_threshold);
     }

@@ -201,8 +201,9 @@ std::string registers_page(const std::vector<DeviceRegister>& registers) {
     for (const RegisterBit& bit : register_bits)
         text << "| `" << bit.register_name << "` | " << bit.bit << " | `" << bit.name << "` | " << bit.meaning
              << " |\n";
-    text << "\n## Errors\n\nValues of register `error`; after the semicolon, the contents of `error_address`.\n\n| value | name | meaning |\n"
-            "| --- | --- | --- |\n";
+    text
+        << "\n## Errors\n\nValues of register `error`; after the semicolon, the contents of `error_address`.\n\n| value | name | meaning |\n"
+           "| --- | --- | --- |\n";
     for (const ErrorMeaning& error : error_meanings)
         text << "| " << static_cast<int>(error.error) << " | `" << error.name << "` | " << error.meaning << " |\n";
     text << "\n## Records\n\nLittle-endian words, three vertices one after another: " << base_triangle_bytes

@@ -28,8 +28,10 @@ struct GeometryOperands {
         describe_tag(fields, item.tag);
         fields.position("p_i", item.p_i, "P of the edge's first end, or of the vertex");
         fields.position("p_j", item.p_j, "P of the edge's second end");
-        fields.direction("n_i", item.n_i, "N of the first end or of the vertex; for a normal N'; for an edge in the family design N_ij");
-        fields.direction("n_j", item.n_j, "N of the second end; in the family design N'_ij for an edge, T for a vertex");
+        fields.direction("n_i", item.n_i,
+                         "N of the first end or of the vertex; for a normal N'; for an edge in the family design N_ij");
+        fields.direction("n_j", item.n_j,
+                         "N of the second end; in the family design N'_ij for an edge, T for a vertex");
         fields.texture("t_i", item.t_i, "t of the first end or of the vertex");
         fields.texture("t_j", item.t_j, "t of the second end");
         fields.family_handedness("handedness", item.handedness, "handedness of a vertex's tangent frame");

@@ -113,7 +113,8 @@ template <class In, class Out>
 void Stage<In, Out>::b_transport(In& item, sc_core::sc_time& delay) {
     if (may_wait_) {
         if (!may_start(item))
-            SC_REPORT_ERROR("tessera/stage", (std::string(name()) + ": an item arrived before the data that it waits for").c_str());
+            SC_REPORT_ERROR("tessera/stage",
+                            (std::string(name()) + ": an item arrived before the data that it waits for").c_str());
         delay = std::max(delay, may_start_after(item));
     }
     Out result = read_and_process(item, delay);

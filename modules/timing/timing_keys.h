@@ -142,8 +142,8 @@ void declare_timing_keys(const Keys& key) {
         "off_chip_latency", [](auto& t) -> auto& { return t.off_chip_memory.latency; }, "cycles", {0, most_places},
         "Off-chip memory: latency, from a request's last byte to its answer");
     key.add_number(
-        "off_chip_bandwidth", [](auto& t) -> auto& { return t.off_chip_memory.bandwidth; }, "bytes per cycle", {1, 4096},
-        "Off-chip memory: bandwidth, both directions combined");
+        "off_chip_bandwidth", [](auto& t) -> auto& { return t.off_chip_memory.bandwidth; }, "bytes per cycle",
+        {1, 4096}, "Off-chip memory: bandwidth, both directions combined");
     key.add_number(
         "off_chip_buffer", [](auto& t) -> auto& { return t.off_chip_memory.buffer; }, "requests", {1, most_places},
         "Off-chip memory: capacity of its request buffer");

@@ -260,8 +260,8 @@ std::string FamilyPassOrTessellate::describe_contents() const {
         edges += input.size();
     text = listed(text, count_of(lit_.size() + queued_.size(), "decided triangle"), "; ");
     text = listed(text, from_tessellation.holds_back() ? "a family that waits for a place" : "", "; ");
-    return listed(text, count_of(edges, "tested edge") + (edges > 0 ? " that arrived before its family had a place" : ""),
-                  "; ");
+    return listed(
+        text, count_of(edges, "tested edge") + (edges > 0 ? " that arrived before its family had a place" : ""), "; ");
 }
 
 /// Shows the family decided last, and which of its children split.
