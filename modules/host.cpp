@@ -47,7 +47,7 @@ void Host::write_table(std::uint64_t address, const unsigned char* bytes, std::s
     payload.set_data_length(static_cast<unsigned>(count));
     payload.set_streaming_width(payload.get_data_length());
     if (socket->transport_dbg(payload) != count)
-        SC_REPORT_ERROR("tessera/host", "a table's memory did not take a row of it");
+        SC_REPORT_ERROR("tessera/host", "a table memory did not accept a row of its table");
 }
 
 void Host::send_again() {

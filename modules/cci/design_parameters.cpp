@@ -119,7 +119,7 @@ class DesignParameters::Keys {
         if (to_.broker_.has_preset_value(name)) {
             const cci::cci_value preset = to_.broker_.get_preset_cci_value(name);
             if (!may_be(preset))
-                refuse(name, preset, "cannot be: it is " + allowed);
+                refuse(name, preset, "is invalid: must be " + allowed);
         }
         auto parameter = std::make_unique<cci::cci_param<Value, cci::CCI_IMMUTABLE_PARAM>>(
             name, standard, to_.broker_, description, cci::CCI_ABSOLUTE_NAME, to_.originator_);
@@ -143,10 +143,10 @@ DesignParameters::DesignParameters(const std::string& prefix, const Design& defa
     Keys<Design>(*this, design_, "")
         .add_choice<Transport>(
             "mode", [](auto& d) -> auto& { return d.transport; },
-            "functional: every result but no cycle counts, fastest; timed: accurate to the cycle");
+            "functional: all results except cycle counts, fastest; timed: cycle-accurate");
     declare_hardware(Keys<Design>(*this, design_, "hardware."));
     if (design_.tests_units == 2)
-        refuse(prefix_ + "hardware.tests_units", cci::cci_value(2), "cannot be: it is 1 or 3");
+        refuse(prefix_ + "hardware.tests_units", cci::cci_value(2), "is invalid: must be 1 or 3");
     for (const auto& [name, preset] : broker_.get_unconsumed_preset_values()) {
         if (name.compare(0, prefix_.size(), prefix_) != 0)
             continue;
@@ -155,7 +155,7 @@ DesignParameters::DesignParameters(const std::string& prefix, const Design& defa
                 return letters_in_common(mistyped, a->name()) < letters_in_common(mistyped, b->name());
             });
         refuse(name, preset,
-               std::string("is preset, but there is no such parameter; did you mean ") + (*nearest)->name() + '?');
+               std::string("is preset, but no such parameter exists; did you mean ") + (*nearest)->name() + '?');
     }
 }
 

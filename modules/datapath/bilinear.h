@@ -31,8 +31,8 @@ struct BilinearWidths : Intermediates {
     Width columns{"difference of two texels", difference};
     Width row{"within a row", value + weight_bits(f)};
     Width rows{"difference of two rows", difference + weight_bits(f)};
-    Width product{"that, times a weight", difference + 2 * weight_bits(f)};
-    Width sum{"between the rows, before it is rounded", value + 2 * weight_bits(f)};
+    Width product{"difference times a weight", difference + 2 * weight_bits(f)};
+    Width sum{"between the rows, before rounding", value + 2 * weight_bits(f)};
     constexpr auto all() const { return std::array{place, columns, row, rows, product, sum}; }
 };
 static_assert(fits_every_format<BilinearWidths>());

@@ -44,10 +44,10 @@ struct CurvatureWidths : Intermediates {
     int longest = f.texture.bits - f.texture.fraction;  // the highest level an edge may have
     Width difference{"abs(du), abs(dv)", f.texture.bits};
     Width eighths{"8 abs(du)", f.texture.bits + 3};
-    Width step{"u, v: that / 2^level", 4};
+    Width step{"u, v: 8 abs(du) / 2^level", 4};
     Width product{"u u, u v, v v", 7};
     Width bend{"xx u u + xy u v + yy v v", 8 + 7 + 1};
-    Width deviation{"abs of that / 64, with the rest", 9};
+    Width deviation{"abs of that / 64, combined with the rest", 9};
     Width measure{"that * 2^(exponent + level)", deviation.bits + largest_curvature_exponent + longest};
     Width codes{"8 abs(2 d_ij - d_i - d_j)", f.displacement.bits + 1 + curvature_fraction};
     constexpr auto all() const {

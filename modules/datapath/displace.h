@@ -16,7 +16,7 @@ struct DisplaceWidths : Intermediates {
     Width height{"S * d + bias", f.position.bits + 1};
     Width along{"(S * d + bias) * N", height.bits + f.normal.bits};
     Width step{"the same, rounded", along.bits - f.normal.fraction};
-    Width sum{"P + that, before it saturates", wider(step.bits, f.position.bits) + 1};
+    Width sum{"P + that, before saturation", wider(step.bits, f.position.bits) + 1};
     constexpr auto all() const { return std::array{product, height, along, step, sum}; }
 };
 static_assert(fits_every_format<DisplaceWidths>());

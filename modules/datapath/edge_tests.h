@@ -19,10 +19,10 @@ struct EdgeTestWidths : Intermediates {
     Width normal{"NT, HT: a difference of components", f.normal.bits};
     Width sums{"SHT: S_i + S_j, 2 S_ij and their difference", f.summed_height.bits + 1};
     Width area{"SHT: width * height", RectangleWidths{f}.width.bits + RectangleWidths{f}.height.bits};
-    Width limit{"SHT: threshold, times the area", wider(summed_height_threshold_bits, area.bits + 17)};
+    Width limit{"SHT: threshold * area", wider(summed_height_threshold_bits, area.bits + 17)};
     Width screen{"VT: abs(dx), abs(dy)", f.screen.bits};
-    Width length{"VT: their sum", screen.bits + 1};
-    Width index{"TCT: parts that are compared", f.texture.bits - f.texture.fraction + f.tex_coord_fraction};
+    Width length{"VT: abs(dx) + abs(dy)", screen.bits + 1};
+    Width index{"TCT: compared parts", f.texture.bits - f.texture.fraction + f.tex_coord_fraction};
     Width product{"HT: N'.x * H.x", 2 * f.normal.bits};
     Width cosine{"HT: N' . H", product.bits + 1};
     constexpr auto all() const { return std::array{normal, sums, area, limit, screen, length, index, product, cosine}; }

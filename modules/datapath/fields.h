@@ -238,17 +238,18 @@ constexpr void describe_triangle(Fields<Codec>& fields, AnyTriangle& triangle) {
     }
     fields.of(-1);
     fields.requesting("split_by", triangle.split_by, "tests that split its parent");
-    fields.gating("stopped_by", triangle.stopped_by, "tests that kept an edge whole");
+    fields.gating("stopped_by", triangle.stopped_by, "tests that stopped an edge from splitting");
     fields.flag("finished", triangle.finished, "no edge splits");
     fields.final_edges("final_edges", triangle.final_edges, "bit k: edge k was tested before and does not split");
     fields.split_edges("split", triangle.split, "bit k: edge k is to be split");
-    fields.uncut_edges("uncut", triangle.uncut, "bit k: edge k asks to be split, and is tested again");
+    fields.uncut_edges("uncut", triangle.uncut, "bit k: edge k requests a split and is tested again");
     for (int k = 0; k < 3; ++k) {
         fields.of(k);
         auto& midpoint = triangle.midpoints[static_cast<std::size_t>(k)];
         fields.midpoint_direction("midpoint_n", midpoint.normal, "N of edge k's midpoint, if it is split");
-        fields.midpoint_direction("midpoint_tangent", midpoint.tangent, "T likewise");
-        fields.midpoint_direction("midpoint_displaced_n", midpoint.displaced_normal, "N' likewise");
+        fields.midpoint_direction("midpoint_tangent", midpoint.tangent, "T of edge k's midpoint, if it is split");
+        fields.midpoint_direction("midpoint_displaced_n", midpoint.displaced_normal,
+                                  "N' of edge k's midpoint, if it is split");
     }
     fields.of(-1);
     fields.annotation("base", triangle.base);

@@ -15,7 +15,7 @@ struct LightWidths : Intermediates {
     Width dot{"N's . L", product.bits + 1};
     Width cosine{"N's . L, at least 0, truncated", dot.bits - f.normal.fraction - 1, 63};
     Width scaled{"(256 - ambient) * that", cosine.bits + 8, 63};
-    Width intensity{"ambient + that, before it saturates", wider(scaled.bits - f.normal.fraction, 9) + 1, 63};
+    Width intensity{"ambient + that, before saturation", wider(scaled.bits - f.normal.fraction, 9) + 1, 63};
     constexpr auto all() const { return std::array{product, dot, cosine, scaled, intensity}; }
 };
 static_assert(fits_every_format<LightWidths>());

@@ -71,7 +71,7 @@ struct NormaliseWidths : Intermediates {
         : Intermediates(formats), component(component_bits) {}
     Width square{"x^2 + y^2 + z^2", 2 * component};
     Width root{"1 / length", ReciprocalRootWidths{f}.root.bits};
-    Width product{"x / length, before it is rounded", component + root.bits};
+    Width product{"x / length, before rounding", component + root.bits};
     constexpr auto all() const { return std::array{square, root, product}; }
 };
 static_assert(fits_every_format<NormaliseWidths>());

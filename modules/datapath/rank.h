@@ -12,7 +12,7 @@ namespace tessera::datapath {
 struct RankWidths : Intermediates {
     using Intermediates::Intermediates;
     Width difference{"RT: abs(du), abs(dv)", f.texture.bits};
-    Width length{"RT: their sum", f.texture.bits + 1};
+    Width length{"RT: abs(du) + abs(dv)", f.texture.bits + 1};
     Width entry{"RT: rank, bound and radius",
                 FormatLimits::rank_bits.most + FormatLimits::bound_bits.most + radius_bits};
     constexpr auto all() const { return std::array{difference, length, entry}; }

@@ -19,16 +19,16 @@ inline constexpr int eye_bits = 40, rank_limit_bits = 19, bound_limit_bits = 18;
 struct RankViewWidths : Intermediates {
     using Intermediates::Intermediates;
     Width away{"abs(x - eye.x)", eye_bits};
-    Width pair{"the sum of two of these", away.bits + 1};
-    Width three{"of three", away.bits + 1};
-    Width times_11{"11 times the greatest sum of two", pair.bits + 3};
-    Width times_9{"9 times the sum of three", three.bits + 3};
+    Width pair{"sum of two of these", away.bits + 1};
+    Width three{"sum of three", away.bits + 1};
+    Width times_11{"11 * the greatest sum of two", pair.bits + 3};
+    Width times_9{"9 * the sum of three", three.bits + 3};
     Width ends{"D_i + D_j", f.view_distance.bits + 1};
     Width radius{"radius of a midpoint's sphere", 4 + 31};
-    Width deepest{"w_i + w_j, and the radius added", wider(ends.bits, radius.bits + 1) + 1};
+    Width deepest{"w_i + w_j + radius", wider(ends.bits, radius.bits + 1) + 1};
     Width level{"logarithm of a distance", 6 + level_fraction};
-    Width rank{"rank, on its scale of 16 bits", FormatLimits::rank_bits.most};
-    Width limit{"threshold, with the logarithm", rank_limit_bits + 1};
+    Width rank{"rank, on the 16-bit scale", FormatLimits::rank_bits.most};
+    Width limit{"threshold + logarithm", rank_limit_bits + 1};
     constexpr auto all() const {
         return std::array{away, pair, three, times_11, times_9, ends, radius, deepest, level, rank, limit};
     }

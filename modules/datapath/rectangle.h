@@ -22,7 +22,7 @@ struct RectangleWidths : Intermediates {
     Width difference{"abs(du), abs(dv)", f.texture.bits};
     Width width{"width", wider(integer, 1)};
     Width height{"height", wider(integer - 1, 1)};
-    Width first{"first column, before it is brought inside", integer + 2};
+    Width first{"first column, before it is shifted inside", integer + 2};
     Width last{"last column", integer + 1};
     Width sum{"S(r), modulo", f.summed_height.bits};
     constexpr auto all() const { return std::array{difference, width, height, first, last, sum}; }

@@ -40,7 +40,7 @@ constexpr void describe_registers(AnyRegisters& r, Visit&& visit) {
     };
     const auto row = [&](const char* name, const char* offset_name, const char* meaning, auto& values) {
         field(name, with_sign, matrix_entry_bits, meaning, values[0], values[1], values[2]);
-        field(offset_name, with_sign, matrix_offset_bits, "its fourth entry", values[3]);
+        field(offset_name, with_sign, matrix_offset_bits, "fourth entry of the row", values[3]);
     };
     const int map_side_bits = f.texture.bits - f.texture.fraction;
 
@@ -70,7 +70,7 @@ constexpr void describe_registers(AnyRegisters& r, Visit&& visit) {
         field("tests.highlight_test", choice, 1, "on", r.tests.highlight_test);
         direction("tests.half_vector", "H, normal's format", r.tests.half_vector);
         field("tests.highlight_cosine", with_sign, signed_bits(2 * f.normal.fraction),
-              "of the highlight's border, twice the normal's fraction", r.tests.highlight_cosine);
+              "cosine at the highlight's border, twice the normal's fraction bits", r.tests.highlight_cosine);
         field("tests.highlight_normal_threshold", number, f.normal.bits, "normal's format",
               r.tests.highlight_normal_threshold);
     }
@@ -79,42 +79,44 @@ constexpr void describe_registers(AnyRegisters& r, Visit&& visit) {
     field("displacement.bias", with_sign, f.position.bits, "position's format", r.displacement.bias);
 
     row("transform.row_x", "transform.row_x.offset", "screen x, 24 fraction bits", r.transform.row_x);
-    row("transform.row_y", "transform.row_y.offset", "screen y, likewise", r.transform.row_y);
-    row("transform.row_w", "transform.row_w.offset", "w, likewise", r.transform.row_w);
-    field("transform.exponent", number, 5, "shift: x and y are multiplied by its power of two", r.transform.exponent);
+    row("transform.row_y", "transform.row_y.offset", "screen y, 24 fraction bits", r.transform.row_y);
+    row("transform.row_w", "transform.row_w.offset", "w, 24 fraction bits", r.transform.row_w);
+    field("transform.exponent", number, 5, "shift: x and y are multiplied by two to this power", r.transform.exponent);
     int shift = f.position.fraction - f.view_distance.fraction;
-    field("transform.view_distance_shift", number, 5, "shift: fraction bits that w has less than the position", shift);
+    field("transform.view_distance_shift", number, 5, "shift: fraction bits of the position minus those of w", shift);
     if constexpr (!std::is_const_v<AnyRegisters>)
         r.formats.view_distance.fraction = f.position.fraction - shift;
-    field("transform.near_plane", number, 63, "w as row_w gives it", r.transform.near_plane);
+    field("transform.near_plane", number, 63, "w before rounding, in the format of row_w's result",
+          r.transform.near_plane);
     auto& n = r.transform.normal_rows;
     field("transform.normal_rows", with_sign, f.normal.bits, "world to view, normal's format", n[0][0], n[0][1],
           n[0][2], n[1][0], n[1][1], n[1][2], n[2][0], n[2][1], n[2][2]);
 
     direction("light.direction", "in view space, normal's format", r.light.direction);
-    field("light.ambient", number, 9, "of 256", r.light.ambient);
+    field("light.ambient", number, 9, "ambient light, in 256ths", r.light.ambient);
 
     if (f.height_test == HeightTest::rank) {  // last, so that the registers of other designs keep their addresses
-        field("rank_table.columns", number, map_side_bits, "of the Rank Table, entries", r.covered.columns);
-        field("rank_table.rows", number, map_side_bits, "likewise", r.covered.rows);
+        field("rank_table.columns", number, map_side_bits, "columns of the Rank Table, entries", r.covered.columns);
+        field("rank_table.rows", number, map_side_bits, "rows of the Rank Table, entries", r.covered.rows);
         const auto threshold = [&](const char* name, int entry_bits, int limit_bits, auto& value) {
             if (entry_bits > 0 && f.distances)
-                field(name, with_sign, limit_bits, "at distance 1, as an entry of 16 bits", value);
+                field(name, with_sign, limit_bits, "at distance 1, as a 16-bit entry", value);
             else if (entry_bits > 0)
                 field(name, number, entry_bits, "an entry's format", value);
         };
         threshold("tests.rank_threshold", f.rank_bits, rank_limit_bits, r.tests.rank_threshold);
         threshold("tests.bound_threshold", f.bound_bits, bound_limit_bits, r.tests.bound_threshold);
         if (f.distances) {
-            field("tests.rank_per_pixel", choice, 1, "errors count per point, per pixel", r.tests.rank_per_pixel);
+            field("tests.rank_per_pixel", choice, 1, "error weighted per point, per pixel", r.tests.rank_per_pixel);
             auto& eye = r.transform.eye;
             field("transform.eye", with_sign, eye_bits, "position's format", eye[0], eye[1], eye[2]);
         }
     }
     if (f.height_test == HeightTest::curvature) {
-        field("curvature_table.columns", number, map_side_bits, "that the Curvature Table covers, texels",
+        field("curvature_table.columns", number, map_side_bits, "columns that the Curvature Table covers, texels",
               r.covered.columns);
-        field("curvature_table.rows", number, map_side_bits, "likewise", r.covered.rows);
+        field("curvature_table.rows", number, map_side_bits, "rows that the Curvature Table covers, texels",
+              r.covered.rows);
         field("tests.curvature_threshold", number, curvature_threshold_bits(f), "codes times texels, 3 fraction bits",
               r.tests.curvature_threshold);
     }

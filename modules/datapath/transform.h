@@ -27,10 +27,10 @@ struct TransformWidths : Intermediates {
     int coordinate = f.position.bits - 1;  // |P'.x| is at most 2^coordinate
     Width product{"row.x * P'.x", signed_bits(TransformParameters::matrix_fraction + coordinate)};
     Width sum{"row . (P', 1)", wider(product.bits + 2, matrix_offset_bits) + 1};
-    Width w{"w, rounded, before it saturates", sum.bits - view_distance_down(f)};
+    Width w{"w, rounded, before saturation", sum.bits - view_distance_down(f)};
     Width mantissa{"mantissa of w", ReciprocalWidths{f}.mantissa.bits};
-    Width inverse{"its reciprocal", ReciprocalWidths{f}.reciprocal.bits};
-    Width numerator{"numerator, its upper bits", numerator_bits + 1};
+    Width inverse{"reciprocal of the mantissa", ReciprocalWidths{f}.reciprocal.bits};
+    Width numerator{"upper bits of the numerator", numerator_bits + 1};
     Width quotient{"numerator * reciprocal", numerator.bits + inverse.bits};
     constexpr auto all() const { return std::array{product, sum, w, mantissa, inverse, numerator, quotient}; }
 };

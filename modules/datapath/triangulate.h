@@ -24,7 +24,7 @@ inline constexpr int diagonal_margin_shift = 6;
 struct DiagonalWidths : Intermediates {
     using Intermediates::Intermediates;
     Width difference{"abs(dx), abs(dy), abs(dz)", f.position.bits};
-    Width length{"their sum", difference.bits + 2};
+    Width length{"abs(dx) + abs(dy) + abs(dz)", difference.bits + 2};
     Width compared{"the sum * 64", length.bits + diagonal_margin_shift};
     constexpr auto all() const { return std::array{difference, length, compared}; }
 };

@@ -29,14 +29,14 @@ const DeviceDesign& checked(const DeviceDesign& design, const datapath::Register
                                       << (initial.formats.texture.bits - 1 - initial.formats.texture.fraction);
     const LargestMap& map = design.largest_map;
     require(map.width >= 1 && map.height >= 1 && map.width <= most_texels && map.height <= most_texels, instance,
-            "the largest map has no texels, or more columns or rows than the texture coordinate's format holds");
+            "the largest map has no texels, or more columns or rows than fit the texture coordinate's format");
     require(
         design.burst_bytes >= 4 && design.burst_bytes <= 4096 && (design.burst_bytes & (design.burst_bytes - 1)) == 0,
-        instance, "a burst is a power of two of bytes, 4 to 4096");
+        instance, "the burst size must be a power of two, 4 to 4096 bytes");
     require(design.triangles_ahead >= 1 && design.finished_triangles >= 1, instance,
-            "at least one base triangle is fetched ahead, and at least one finished triangle waits");
+            "triangles_ahead and finished_triangles must be at least 1");
     require(design.machine.queue.capacity == 0 || design.machine.queue.overflow == QueueOverflow::spill, instance,
-            "a queue that neither spills nor is unbounded could stop the machine for good");
+            "a bounded queue that does not spill could stop the machine permanently");
     return design;
 }
 

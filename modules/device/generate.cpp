@@ -95,7 +95,7 @@ std::string c_header(const std::vector<DeviceRegister>& registers) {
         << "\n"
            " * Offsets are the same in every design; widths are those of the default formats. */\n"
            "#include <stdint.h>\n\n"
-           "/* Offsets in bytes. Of a register of two words the lower one comes first. */\n";
+           "/* Offsets in bytes. In a two-word register the lower word comes first. */\n";
     for (const DeviceRegister& r : registers)
         text << "#define TESSERA_" << upper_case(r.name) << " 0x" << hex(r.offset, 3) << "u\n";
     text << "#define TESSERA_REGISTER_BYTES 0x" << hex(register_bytes, 3) << "u\n\n/* Bits of control registers. */\n";
@@ -112,15 +112,15 @@ std::string c_header(const std::vector<DeviceRegister>& registers) {
     text
         << "\n\n/* Records in bus memory: little-endian words. */\n"
         << c_record(false) << c_record(true)
-        << "\n/* X(name, offset, bits, words, is signed, writable) of every register. */\n#define TESSERA_REGISTER_LIST(X)";
+        << "\n/* X(name, offset, bits, words, is signed, writable) for every register. */\n#define TESSERA_REGISTER_LIST(X)";
     for (const DeviceRegister& r : registers)
         text << " \\\n    X(" << upper_case(r.name) << ", 0x" << hex(r.offset, 3) << "u, " << r.bits << ", " << r.words
              << ", " << (r.is_signed ? 1 : 0) << ", " << (r.access == RegisterAccess::read_only ? 0 : 1) << ")";
     text
-        << "\n\n/* Every register's number: a place in that list. */\nenum tessera_register {\n"
+        << "\n\n/* Numbers of the registers: their positions in that list. */\nenum tessera_register {\n"
            "#define TESSERA_NUMBER(name, offset, bits, words, is_signed, writable) TESSERA_REGISTER_##name,\n"
            "    TESSERA_REGISTER_LIST(TESSERA_NUMBER)\n#undef TESSERA_NUMBER\n"
-           "    TESSERA_REGISTERS  /* how many */\n};\n/* NOLINTEND(readability-identifier-naming,modernize-deprecated-headers) */\n";
+           "    TESSERA_REGISTERS  /* number of registers */\n};\n/* NOLINTEND(readability-identifier-naming,modernize-deprecated-headers) */\n";
     return text.str();
 }
 
@@ -186,9 +186,9 @@ std::string registers_page(const std::vector<DeviceRegister>& registers) {
         << "# The device's registers\n\n"
         << made_by
         << "\n\nOffsets are in bytes and the same in every design. Widths and reset values are those of the default\n"
-           "design, of a register that it lacks those of a design that has it. A register of more than 32 bits has a second word, which follows the lower one. Bits beyond the\n"
-           "width read as 0, of a signed register as its sign, and are dropped when written. `ro`: a write is refused.\n"
-           "`rw`: refused while a frame is under way, unless marked *. `command`: a 1 acts and reads as 0. `w1c`: a 1\n"
+           "design; for registers that it lacks, those of a design that has them. A register of more than 32 bits has a second word, which follows the lower one. Bits beyond the\n"
+           "width read as 0, in a signed register as copies of the sign bit, and are ignored in writes. `ro`: a write is refused.\n"
+           "`rw`: refused while a frame is under way, unless marked *. `command`: writing 1 executes the command, reads return 0. `w1c`: writing 1\n"
            "clears the bit.\n\n"
            "| offset | register | bits | access | reset | meaning |\n| --- | --- | --- | --- | --- | --- |\n";
     for (const DeviceRegister& r : registers)
@@ -201,12 +201,13 @@ std::string registers_page(const std::vector<DeviceRegister>& registers) {
     for (const RegisterBit& bit : register_bits)
         text << "| `" << bit.register_name << "` | " << bit.bit << " | `" << bit.name << "` | " << bit.meaning
              << " |\n";
-    text << "\n## Errors\n\nRegister `error`; what `error_address` holds stands last.\n\n| value | name | meaning |\n"
-            "| --- | --- | --- |\n";
+    text
+        << "\n## Errors\n\nValues of register `error`; after the semicolon, the contents of `error_address`.\n\n| value | name | meaning |\n"
+           "| --- | --- | --- |\n";
     for (const ErrorMeaning& error : error_meanings)
         text << "| " << static_cast<int>(error.error) << " | `" << error.name << "` | " << error.meaning << " |\n";
     text << "\n## Records\n\nLittle-endian words, three vertices one after another: " << base_triangle_bytes
-         << " bytes of a base triangle, " << finished_triangle_bytes << " of a\nfinished one, in all formats.\n\n"
+         << " bytes per base triangle, " << finished_triangle_bytes << " per\nfinished one, in all formats.\n\n"
          << "| record | word | name | meaning |\n| --- | --- | --- | --- |\n";
     int word = 0;
     bool before = false;

@@ -20,7 +20,7 @@ constexpr void describe_base_vertex(AnyVertex& v, Word&& word) {
     word("nx", v.normal.x, true, "N, normal's format; no component beyond 1.0 in magnitude");
     word("ny", v.normal.y, true, "");
     word("nz", v.normal.z, true, "");
-    word("tx", v.tangent.x, true, "T, likewise");
+    word("tx", v.tangent.x, true, "T, same format and limit as N");
     word("ty", v.tangent.y, true, "");
     word("tz", v.tangent.z, true, "");
     word("handedness", v.handedness, true, "1 or -1: bitangent = handedness (N x T)");

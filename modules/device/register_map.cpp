@@ -32,11 +32,11 @@ std::uint64_t entry_sizes(const Formats& f) {
 std::vector<DeviceRegister> control_registers(const Formats& f, const LargestMap& largest) {
     constexpr RegisterAccess ro = RegisterAccess::read_only, rw = RegisterAccess::read_write,
                              w1c = RegisterAccess::write_one_to_clear;
-    const char* const format = "bits, and from bit 8 on fraction bits";
+    const char* const format = "bits 7 to 0: width; bits 15 to 8: fraction bits";
     // name, offset, bits, words, signed, reset value, access, while busy, always present, meaning
     return {
         {"id", offset::id, 32, 1, false, 0x53534554, ro, false, "", "the letters TESS"},
-        {"version", offset::version, 32, 1, false, 0x00010000, ro, false, "", "of this register map: 1.0"},
+        {"version", offset::version, 32, 1, false, 0x00010000, ro, false, "", "version of this register map: 1.0"},
         {"control", offset::control, 2, 1, false, 0, RegisterAccess::command, true, "", "start, reset"},
         {"status", offset::status, 4, 1, false, 0, ro, false, "", "busy, done, error, resetting"},
         {"interrupt", offset::interrupt, 2, 1, false, 0, w1c, true, "", "pending: done, error"},
@@ -44,26 +44,28 @@ std::vector<DeviceRegister> control_registers(const Formats& f, const LargestMap
          "the interrupt output is high while a bit is set here and in interrupt"},
         {"error", offset::error, 4, 1, false, 0, ro, false, "", "why the last frame was refused or stopped"},
         {"error_address", offset::error_address, 64, 2, false, 0, ro, false, "",
-         "of it: a bus address, or a register's offset"},
+         "address of the error: a bus address or a register's offset"},
         {"fetch", offset::fetch, 3, 1, false, 7, rw, false, "", "tables that a frame fetches before it begins"},
         {"displacement_map.address", offset::displacement_map_address, 64, 2, false, 0, rw, false, "",
-         "of the table in bus memory"},
-        {"normal_map.address", offset::normal_map_address, 64, 2, false, 0, rw, false, "", "likewise"},
+         "address of the table in bus memory"},
+        {"normal_map.address", offset::normal_map_address, 64, 2, false, 0, rw, false, "",
+         "address of the table in bus memory"},
         {"summed_height_table.address", offset::summed_height_table_address, 64, 2, false, 0, rw, false, "",
-         "likewise"},
+         "address of the table in bus memory"},
         {"triangles.address", offset::triangles_address, 64, 2, false, 0, rw, false, "",
-         "of the base triangles' records in bus memory"},
-        {"triangles.count", offset::triangles_count, 32, 1, false, 0, rw, false, "", "base triangles"},
+         "address of the base triangles' records in bus memory"},
+        {"triangles.count", offset::triangles_count, 32, 1, false, 0, rw, false, "", "number of base triangles"},
         {"triangles.sent", offset::triangles_sent, 32, 1, false, 0, ro, false, "",
          "base triangles of this frame sent to the machine"},
         {"triangles.finished", offset::triangles_finished, 32, 1, false, 0, ro, false, "",
-         "finished triangles of this frame, culled ones too, modulo 2^32"},
-        {"ring.address", offset::ring_address, 64, 2, false, 0, rw, false, "", "of the output ring in bus memory"},
-        {"ring.size", offset::ring_size, 31, 1, false, 0, rw, false, "", "records"},
+         "finished triangles of this frame, including culled ones, modulo 2^32"},
+        {"ring.address", offset::ring_address, 64, 2, false, 0, rw, false, "",
+         "address of the output ring in bus memory"},
+        {"ring.size", offset::ring_size, 31, 1, false, 0, rw, false, "", "capacity in records"},
         {"ring.write_index", offset::ring_write_index, 32, 1, false, 0, ro, false, "",
          "records of this frame written, modulo 2^32"},
         {"ring.read_index", offset::ring_read_index, 32, 1, false, 0, rw, true, "",
-         "records of this frame that software has read, likewise; may not move back or pass the write index"},
+         "records of this frame read by software, modulo 2^32; must not move back or pass the write index"},
         {"format.position", 0x080, 16, 1, false, packed(f.position), ro, false, "", format},
         {"format.normal", 0x084, 16, 1, false, packed(f.normal), ro, false, "", format},
         {"format.texture", 0x088, 16, 1, false, packed(f.texture), ro, false, "", format},
@@ -71,13 +73,13 @@ std::vector<DeviceRegister> control_registers(const Formats& f, const LargestMap
         {"format.summed_height", 0x090, 16, 1, false, packed(f.summed_height), ro, false, "", format},
         {"format.screen", 0x094, 16, 1, false, packed(f.screen), ro, false, "", format},
         {"features", 0x098, 16, 1, false, features(f), ro, false, "",
-         "what the design has; from bit 8 to 11, bits of a generation"},
+         "features of the design; bits 11 to 8: width of a generation"},
         {"largest_map", 0x09c, 32, 1, false, largest.width | std::uint64_t{largest.height} << 16, ro, false, "",
-         "columns, and from bit 16 on rows, of the largest map"},
+         "largest map: bits 15 to 0: columns; bits 31 to 16: rows"},
         {"entry_bytes", 0x0a0, 24, 1, false, entry_sizes(f), ro, false, "",
-         "of an entry of the displacement map, from bit 8 on of the normal map, from bit 16 on of the Summed Height Table or the table in its place"},
+         "bytes of an entry: bits 7 to 0: displacement map; bits 15 to 8: normal map; bits 23 to 16: Summed Height Table or the table in its place"},
         {"record_bytes", 0x0a4, 32, 1, false, base_triangle_bytes | std::uint64_t{finished_triangle_bytes} << 16, ro,
-         false, "", "of a base triangle, and from bit 16 on of a finished one"},
+         false, "", "bytes of a record: bits 15 to 0: base triangle; bits 31 to 16: finished triangle"},
     };
 }
 
@@ -116,7 +118,7 @@ const char* test_of(const std::string& name, datapath::HeightTest kind) {
         return "";
     if (!has_register(kind, false, true, name))
         return "Highlight Test";
-    return has_register(kind, false, false, name) ? kind_of(kind).title : "Rank Test as the viewer sees it";
+    return has_register(kind, false, false, name) ? kind_of(kind).title : "view-dependent Rank Test";
 }
 
 struct Place {
@@ -166,7 +168,7 @@ std::vector<DeviceRegister> register_map(const datapath::Registers& reset, const
                            field.kind == datapath::RegisterKind::signed_number,
                            static_cast<std::uint64_t>(value) & mask,
                            base ? RegisterAccess::read_only : RegisterAccess::read_write, false, place->only_with,
-                           base ? "of the table in the device's own table memory" : field.meaning});
+                           base ? "base address of the table in the device's own table memory" : field.meaning});
             ++place;
         }
     });

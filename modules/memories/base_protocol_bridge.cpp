@@ -137,14 +137,14 @@ tlm::tlm_sync_enum BaseProtocolBridge::nb_transport_bw(tlm::tlm_generic_payload&
     }
     if (phase == tlm::END_REQ) {
         if (!ends_request)
-            stream_protocol_error(to_memory.name(), "END_REQ for a request that is not on offer", &clock_);
+            stream_protocol_error(to_memory.name(), "END_REQ for a request that is not pending", &clock_);
         return tlm::TLM_ACCEPTED;
     }
     const auto entry = std::find_if(entries_.begin(), entries_.end(), [&](const auto& one) {
         return &one->payload == &payload && one->request != nullptr;
     });
     if (entry == entries_.end())
-        stream_protocol_error(to_memory.name(), "BEGIN_RESP for a request that was not made", &clock_);
+        stream_protocol_error(to_memory.name(), "BEGIN_RESP for an unknown request", &clock_);
     answered(**entry, cycle);
     return tlm::TLM_COMPLETED;
 }

@@ -30,7 +30,7 @@ tlm::tlm_sync_enum MemoryServer::nb_transport_fw(int id, MemoryRequest& request,
     if (held_back_.size() <= port)
         held_back_.resize(port + 1);
     if (!held_back_[port].empty())
-        stream_protocol_error(socket.name(), "BEGIN_REQ before END_REQ of the request before", &clock_);
+        stream_protocol_error(socket.name(), "BEGIN_REQ before END_REQ of the previous request", &clock_);
     const std::uint64_t cycle = now();
     const std::uint64_t wait = stalls_.next() + clock_.cycles(delay);
     activity_.item_in(cycle);

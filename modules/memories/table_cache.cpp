@@ -143,7 +143,7 @@ unsigned TableCache::transport_dbg(int, MemoryRequest& request) {
 
 std::string TableCache::describe_contents() const {
     return listed(MemoryServer::describe_contents(),
-                  count_of(on_their_way_.size(), "line") + (on_their_way_.empty() ? "" : " to come"));
+                  count_of(on_their_way_.size(), "line") + (on_their_way_.empty() ? "" : " being fetched"));
 }
 
 void TableCache::trace_signals(Signals& signals) const {

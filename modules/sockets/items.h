@@ -27,12 +27,14 @@ struct GeometryOperands {
     static constexpr void describe(datapath::Fields<Codec>& fields, Any& item) {
         describe_tag(fields, item.tag);
         fields.position("p_i", item.p_i, "P of the edge's first end, or of the vertex");
-        fields.position("p_j", item.p_j, "P of its second end");
-        fields.direction("n_i", item.n_i, "N likewise; N' of a normal; N_ij of a family's edge");
-        fields.direction("n_j", item.n_j, "N; of families N'_ij of an edge, T of a vertex");
-        fields.texture("t_i", item.t_i, "t");
-        fields.texture("t_j", item.t_j, "t");
-        fields.family_handedness("handedness", item.handedness, "of a vertex's tangent frame");
+        fields.position("p_j", item.p_j, "P of the edge's second end");
+        fields.direction("n_i", item.n_i,
+                         "N of the first end or of the vertex; for a normal N'; for an edge in the family design N_ij");
+        fields.direction("n_j", item.n_j,
+                         "N of the second end; in the family design N'_ij for an edge, T for a vertex");
+        fields.texture("t_i", item.t_i, "t of the first end or of the vertex");
+        fields.texture("t_j", item.t_j, "t of the second end");
+        fields.family_handedness("handedness", item.handedness, "handedness of a vertex's tangent frame");
     }
 };
 
@@ -50,10 +52,10 @@ struct BasePoint {
     static constexpr void describe(datapath::Fields<Codec>& fields, Any& item) {
         describe_tag(fields, item.tag);
         fields.position("p", item.p, "P");
-        fields.direction("n", item.n, "N; of an edge (N_i + N_j) / 2, not yet of unit length; of a normal N'");
+        fields.direction("n", item.n, "N; for an edge (N_i + N_j) / 2, not yet normalised; for a normal N'");
         fields.texture("t", item.t, "t");
-        fields.midpoint_direction("displaced_n", item.displaced_n, "N' of a family's midpoint, T of a vertex");
-        fields.family_handedness("handedness", item.handedness, "of a vertex's tangent frame");
+        fields.midpoint_direction("displaced_n", item.displaced_n, "N' of a midpoint, T of a vertex");
+        fields.family_handedness("handedness", item.handedness, "handedness of a vertex's tangent frame");
     }
 };
 
@@ -67,7 +69,7 @@ struct DisplacedPoint : BasePoint {
     static constexpr void describe(datapath::Fields<Codec>& fields, Any& item) {
         BasePoint::describe(fields, item);
         fields.position("displaced", item.displaced, "P'");
-        fields.code("code", item.code, "d, in a design whose vertices carry it");
+        fields.code("code", item.code, "d, if vertices carry it");
     }
 };
 
@@ -115,11 +117,11 @@ struct EdgeEnd {
         fields.texture("t", end.t, "t");
         fields.direction("n", end.n, "N");
         fields.direction("tangent", end.tangent, "T");
-        fields.handedness("handedness", end.handedness, "of the tangent frame");
+        fields.handedness("handedness", end.handedness, "handedness of the tangent frame");
         fields.direction("displaced_n", end.displaced_n, "N', if known");
         fields.screen("screen", end.screen, "P's, if known");
         fields.generation("generation", end.generation, "generation");
-        fields.code("code", end.code, "d, if known, in a design whose vertices carry it");
+        fields.code("code", end.code, "d, if known and if vertices carry it");
     }
 };
 
@@ -134,7 +136,7 @@ struct TestOperands {
     template <class Codec, class Any>
     static constexpr void describe(datapath::Fields<Codec>& fields, Any& item) {
         describe_tag(fields, item.tag);
-        fields.number("new_vertices", item.new_vertices, 3, "the triangle's vertices without P's and N'");
+        fields.number("new_vertices", item.new_vertices, 3, "vertices whose P's and N' are not known yet");
         for (int k = 0; k < 2; ++k) {
             fields.of(k);
             EdgeEnd::describe(fields, item.ends[static_cast<std::size_t>(k)]);
@@ -156,8 +158,8 @@ struct TexCoordOperands {
         fields.texture("t_i", item.t_i, "t of the first end");
         fields.texture("t_j", item.t_j, "t of the second end");
         fields.texture("t_ij", item.t_ij, "t of the midpoint");
-        fields.generation("generation_i", item.generation_i, "of the first end");
-        fields.generation("generation_j", item.generation_j, "of the second end");
+        fields.generation("generation_i", item.generation_i, "generation of the first end");
+        fields.generation("generation_j", item.generation_j, "generation of the second end");
     }
 };
 
@@ -176,10 +178,10 @@ struct HeightOperands {
         fields.texture("t_i", item.t_i, "t of the first end");
         fields.texture("t_j", item.t_j, "t of the second end");
         fields.texture("t_ij", item.t_ij, "t of the midpoint");
-        fields.code_flag("codes_known", item.codes_known, "in a design whose vertices carry d: it is known of both");
+        fields.code_flag("codes_known", item.codes_known, "d is known for both ends, if vertices carry it");
         fields.code("code_i", item.code_i, "d of the first end");
         fields.code("code_j", item.code_j, "d of the second end");
-        fields.edge_in_view("ends", item.ends, "D_i + D_j and w_i + w_j, to a Rank Test as the viewer sees it");
+        fields.edge_in_view("ends", item.ends, "D_i + D_j and w_i + w_j, for a view-dependent Rank Test");
     }
 };
 
@@ -196,16 +198,16 @@ struct NormalOperands {
     template <class Codec, class Any>
     static constexpr void describe(datapath::Fields<Codec>& fields, Any& item) {
         describe_tag(fields, item.tag);
-        fields.number("new_vertices", item.new_vertices, 3, "the triangle's vertices without N'");
+        fields.number("new_vertices", item.new_vertices, 3, "vertices whose N' is not known yet");
         fields.texture("t", item.t, "t of the midpoint, or of the vertex");
         fields.direction("n_i", item.n_i, "N of the first end, or of the vertex");
         fields.direction("n_j", item.n_j, "N of the second end");
-        fields.direction("tangent_i", item.tangent_i, "T likewise");
-        fields.direction("tangent_j", item.tangent_j, "T");
-        fields.handedness("handedness_i", item.handedness_i, "of the tangent frame");
-        fields.handedness("handedness_j", item.handedness_j, "of the tangent frame");
-        fields.direction("displaced_n_i", item.displaced_n_i, "N', if known");
-        fields.direction("displaced_n_j", item.displaced_n_j, "N', if known");
+        fields.direction("tangent_i", item.tangent_i, "T of the first end, or of the vertex");
+        fields.direction("tangent_j", item.tangent_j, "T of the second end");
+        fields.handedness("handedness_i", item.handedness_i, "handedness of the tangent frame");
+        fields.handedness("handedness_j", item.handedness_j, "handedness of the tangent frame");
+        fields.direction("displaced_n_i", item.displaced_n_i, "N' of the first end, if known");
+        fields.direction("displaced_n_j", item.displaced_n_j, "N' of the second end, if known");
     }
 };
 
@@ -219,7 +221,7 @@ struct ViewOperands {
     template <class Codec, class Any>
     static constexpr void describe(datapath::Fields<Codec>& fields, Any& item) {
         describe_tag(fields, item.tag);
-        fields.number("new_vertices", item.new_vertices, 3, "the triangle's vertices without P's");
+        fields.number("new_vertices", item.new_vertices, 3, "vertices whose P's is not known yet");
         fields.screen("screen_i", item.screen_i, "P's of the first end, if known");
         fields.screen("screen_j", item.screen_j, "P's of the second end, if known");
     }
@@ -253,7 +255,7 @@ struct HeightResult {
     static constexpr void describe(datapath::Fields<Codec>& fields, Any& item) {
         describe_tag(fields, item.tag);
         fields.flag("summed_height", item.summed_height, "SHT");
-        fields.rank("rank", item.rank, "of the midpoint, where there is a Rank Test");
+        fields.rank("rank", item.rank, "rank of the midpoint, with a Rank Test");
     }
 };
 
@@ -268,7 +270,7 @@ struct ViewResult {
     static constexpr void describe(datapath::Fields<Codec>& fields, Any& item) {
         describe_tag(fields, item.tag);
         fields.flag("view", item.view, "VT");
-        fields.edge_in_view("ends", item.ends, "D_i + D_j and w_i + w_j, for a Rank Test as the viewer sees it");
+        fields.edge_in_view("ends", item.ends, "D_i + D_j and w_i + w_j, for a view-dependent Rank Test");
     }
 };
 
@@ -288,7 +290,7 @@ struct NormalResult {
         fields.direction("displaced_n", item.displaced_n, "N'_ij");
         fields.direction("displaced_n_i", item.displaced_n_i, "N' of the first end");
         fields.flag("normal", item.normal, "NT");
-        fields.highlight("highlight", item.highlight, "HT, where it is built");
+        fields.highlight("highlight", item.highlight, "HT, with a Highlight Test");
     }
 };
 
@@ -307,7 +309,7 @@ struct TestedEdge {
         fields.direction("tangent", item.found.tangent, "T_ij");
         fields.direction("displaced_n", item.found.displaced_normal, "N'_ij");
         fields.tests("tests", item.found.tests, "NT, SHT, VT, TCT, GT, HT");
-        fields.rank("rank", item.found.rank, "of the midpoint, where there is a Rank Test");
+        fields.rank("rank", item.found.rank, "rank of the midpoint, with a Rank Test");
         fields.direction("displaced_n_i", item.displaced_n_i, "N' of the first end");
         fields.annotation("evaluated", item.found.evaluated);
     }
@@ -322,7 +324,7 @@ struct TakenTriangle {
 
     template <class Codec, class Any>
     static constexpr void describe(datapath::Fields<Codec>& fields, Any& item) {
-        fields.tag("tag", item.tag, "the triangle");
+        fields.tag("tag", item.tag, "identifies the triangle");
         describe_origin(fields, item.origin);
         describe_triangle(fields, item.triangle);
     }
@@ -348,7 +350,7 @@ struct DecidedTriangle {
             auto& edge = item.pass.edges[static_cast<std::size_t>(k)];
             fields.position("inserted_p", made.position, "P_ij");
             fields.texture("inserted_t", made.texture, "t_ij");
-            fields.code("inserted_code", made.code, "d_ij, in a design whose vertices carry it");
+            fields.code("inserted_code", made.code, "d_ij, if vertices carry it");
             fields.position("inserted_displaced", made.displaced, "P'_ij");
             fields.screen("inserted_screen", made.screen, "P's_ij");
             fields.direction("inserted_n", edge.normal, "N_ij");
@@ -373,7 +375,7 @@ struct Family {
 
     template <class Codec, class Any>
     static constexpr void describe(datapath::Fields<Codec>& fields, Any& item) {
-        fields.tag("tag", item.tag, "the triangle");
+        fields.tag("tag", item.tag, "identifies the triangle");
         describe_origin(fields, item.origin);
         for (int k = 0; k < 6; ++k) {
             fields.of(k);
@@ -381,11 +383,11 @@ struct Family {
         }
         fields.of(-1);
         fields.requesting("split_by", item.triangle.split_by, "tests that split it");
-        fields.gating("stopped_by", item.triangle.stopped_by, "tests that kept an edge whole");
+        fields.gating("stopped_by", item.triangle.stopped_by, "tests that stopped an edge from splitting");
         fields.number("split", item.triangle.split, 3, "bit k: edge k is split");
         fields.uncut_edges("uncut", item.triangle.uncut, "bit k: edge k is to be tested again");
-        fields.flag("second_diagonal", item.second_diagonal, "the quadrilateral's");
-        fields.flag("untested", item.untested, "a base triangle, whose edges are still to be tested");
+        fields.flag("second_diagonal", item.second_diagonal, "the quadrilateral is cut along its second diagonal");
+        fields.flag("untested", item.untested, "a base triangle, whose edges are not tested yet");
         fields.annotation("triangle_base", item.triangle.base);
         fields.annotation("parent", item.triangle.parent);
     }
@@ -446,7 +448,7 @@ struct LitTriangle {
             auto& corner = item.corners[static_cast<std::size_t>(k)];
             fields.pixel("screen", corner.screen, "P's");
             fields.texture("t", corner.texture, "t");
-            fields.number("intensity", corner.intensity, 8, "light, 255 the brightest");
+            fields.number("intensity", corner.intensity, 8, "light intensity, 255 is the brightest");
         }
         fields.of(-1);
     }
@@ -459,7 +461,7 @@ struct QueueLevel {
 
     template <class Codec, class Any>
     static constexpr void describe(datapath::Fields<Codec>& fields, Any& item) {
-        fields.flag("below_watermark", item.below_watermark, "fewer triangles wait than the watermark");
+        fields.flag("below_watermark", item.below_watermark, "the queue is below its watermark");
     }
 };
 

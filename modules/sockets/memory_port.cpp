@@ -73,7 +73,7 @@ void MemoryPort::write(std::uint64_t address) {
 
 void MemoryPort::offer(tlm::tlm_command command, const std::uint64_t* addresses, unsigned count) {
     if (on_offer_)
-        stream_protocol_error(socket.name(), "BEGIN_REQ before END_REQ of the request before", clock_);
+        stream_protocol_error(socket.name(), "BEGIN_REQ before END_REQ of the previous request", clock_);
     ++requests_;
     Slot& slot = slots_.push();
     MemoryRequest& request = slot.request;
@@ -93,7 +93,7 @@ void MemoryPort::offer(tlm::tlm_command command, const std::uint64_t* addresses,
     if (status != tlm::TLM_UPDATED || phase != tlm::END_REQ)
         stream_protocol_error(socket.name(), "BEGIN_REQ was answered by neither END_REQ nor TLM_ACCEPTED", clock_);
     if (!on_offer)
-        stream_protocol_error(socket.name(), "END_REQ by return for a request that was taken", clock_);
+        stream_protocol_error(socket.name(), "END_REQ returned for a request that was already accepted", clock_);
 }
 
 tlm::tlm_sync_enum MemoryPort::nb_transport_bw(MemoryRequest& request, tlm::tlm_phase& phase, sc_core::sc_time& delay) {
@@ -101,14 +101,14 @@ tlm::tlm_sync_enum MemoryPort::nb_transport_bw(MemoryRequest& request, tlm::tlm_
     clock_->wake_at(*unit_, cycle);
     if (phase == tlm::END_REQ) {
         if (!on_offer_ || &slots_.back().request != &request)
-            stream_protocol_error(socket.name(), "END_REQ for a request that is not on offer", clock_);
+            stream_protocol_error(socket.name(), "END_REQ for a request that is not pending", clock_);
         on_offer_ = false;
         return tlm::TLM_ACCEPTED;
     }
     if (phase != tlm::BEGIN_RESP)
-        stream_protocol_error(socket.name(), "a phase that no memory may send", clock_);
+        stream_protocol_error(socket.name(), "a phase that a memory must not send", clock_);
     if (answered_ == slots_.size())
-        stream_protocol_error(socket.name(), "BEGIN_RESP for a request that was not made", clock_);
+        stream_protocol_error(socket.name(), "BEGIN_RESP for an unknown request", clock_);
     const bool taken = !on_offer_ || answered_ + 1 < slots_.size();
     if (&slots_.at(answered_).request != &request || !taken)
         stream_protocol_error(socket.name(), "BEGIN_RESP out of order or before END_REQ", clock_);

@@ -99,8 +99,8 @@ struct PartTag {
 
 template <class Codec, class Any>
 constexpr void describe_tag(datapath::Fields<Codec>& fields, Any& tag) {
-    fields.tag("tag", tag.triangle, "the triangle");
-    fields.number("part", tag.part, part_bits, "vertex, normal or edge: waveforms/parts.txt");
+    fields.tag("tag", tag.triangle, "identifies the triangle");
+    fields.number("part", tag.part, part_bits, "vertex, normal or edge; see waveforms/parts.txt");
     describe_origin(fields, tag.origin);
 }
 

@@ -92,7 +92,7 @@ class StreamInput : public tlm::tlm_target_socket<32, Stream<Payload>>,
         if (phase != tlm::BEGIN_REQ)
             stream_protocol_error(this->name(), "a phase other than BEGIN_REQ", clock_);
         if (!pending_.empty())
-            stream_protocol_error(this->name(), "BEGIN_REQ before END_REQ of the item before", clock_);
+            stream_protocol_error(this->name(), "BEGIN_REQ before END_REQ of the previous item", clock_);
         if (unit_ == nullptr)
             stream_protocol_error(this->name(), "nb_transport in functional mode", clock_);
         const std::uint64_t wait = stalls_.next() + clock_->cycles(delay);

@@ -66,7 +66,7 @@ class StreamOutput : public tlm::tlm_initiator_socket<32, Stream<Payload>>,
     /// Offers an item, which must stay in place until free(). Returns true if it is accepted at once.
     bool send(Payload& payload) {
         if (on_offer_ != nullptr)
-            stream_protocol_error(this->name(), "BEGIN_REQ before END_REQ of the item before", clock_);
+            stream_protocol_error(this->name(), "BEGIN_REQ before END_REQ of the previous item", clock_);
         if (wires_.formats != nullptr)
             packed_ = through_wires(payload);
         Payload& sent = wires_.formats != nullptr ? packed_ : payload;
@@ -106,7 +106,7 @@ class StreamOutput : public tlm::tlm_initiator_socket<32, Stream<Payload>>,
         if constexpr (is_described<Payload>) {
             PackedItem packed;
             if (!pack_item(payload, *wires_.formats, wires_.tag_bits, packed))
-                stream_protocol_error(this->name(), "a value that its field cannot hold", clock_);
+                stream_protocol_error(this->name(), "a value that does not fit its field", clock_);
             return unpack_item<Payload>(packed, *wires_.formats, wires_.tag_bits);
         } else {
             return payload;
@@ -115,7 +115,7 @@ class StreamOutput : public tlm::tlm_initiator_socket<32, Stream<Payload>>,
 
     tlm::tlm_sync_enum nb_transport_bw(Payload& payload, tlm::tlm_phase& phase, sc_core::sc_time& delay) override {
         if (on_offer_ != &payload || phase != tlm::END_REQ)
-            stream_protocol_error(this->name(), "a phase other than the END_REQ that was due", clock_);
+            stream_protocol_error(this->name(), "a phase other than the expected END_REQ", clock_);
         on_offer_ = nullptr;
         if (unit_ != nullptr)
             clock_->wake_at(*unit_, clock_->cycle() + clock_->cycles(delay));

@@ -123,7 +123,7 @@ Signals::Declared& Signals::find(const Name& name) {
         if (declared.name == name)
             return declared;
     }
-    const std::string message = scope_ + ": shows " + name.name + ", which it has not declared";
+    const std::string message = scope_ + ": traces " + name.name + ", which is not declared";
     SC_REPORT_ERROR("tessera/trace", message.c_str());
     throw std::logic_error(message);  // where SC_ERROR is configured not to throw
 }

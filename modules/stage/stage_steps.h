@@ -113,7 +113,8 @@ template <class In, class Out>
 void Stage<In, Out>::b_transport(In& item, sc_core::sc_time& delay) {
     if (may_wait_) {
         if (!may_start(item))
-            SC_REPORT_ERROR("tessera/stage", (std::string(name()) + ": an item came before what it waits for").c_str());
+            SC_REPORT_ERROR("tessera/stage",
+                            (std::string(name()) + ": an item arrived before the data that it waits for").c_str());
         delay = std::max(delay, may_start_after(item));
     }
     Out result = read_and_process(item, delay);
@@ -241,7 +242,7 @@ template <class In, class Out>
 std::string Stage<In, Out>::describe_contents() const {
     std::string text = count_of(machinery_->pipeline.size() + input_->size(), "item");
     if (over_ports([](const MemoryPort& port) { return port.on_offer(); }) > 0)
-        text = listed(text, "a request its memory does not take");
+        text = listed(text, "a request that its memory does not accept");
     return listed(text, input_->holds_back() ? "one waiting at the input" : "");
 }
 

@@ -120,7 +120,7 @@ class Activity {
             if (share.by == by_ && share.state == state_)
                 return share;
         }
-        SC_REPORT_ERROR("tessera/activity", "a unit has more neighbours than can be told apart");
+        SC_REPORT_ERROR("tessera/activity", "a unit has more neighbours than can be distinguished");
         return shares_[recent_ = 0];
     }
     void integrate(std::uint64_t cycle) {

@@ -13,8 +13,8 @@ sc_core::sc_time clock_period(const char* instance, unsigned picoseconds) {
         (steps_a_second == 0 || picoseconds % (picoseconds_a_second / steps_a_second) != 0)) {
         const std::string message =
             std::string(instance) + ": a clock period of " + std::to_string(picoseconds) +
-            " ps is no multiple of SystemC's time resolution, " + sc_core::sc_get_time_resolution().to_string() +
-            "; choose another period, or call sc_set_time_resolution(1, SC_PS) before anything is built";
+            " ps is not a multiple of SystemC's time resolution, " + sc_core::sc_get_time_resolution().to_string() +
+            "; choose another period, or call sc_set_time_resolution(1, SC_PS) before any module is constructed";
         SC_REPORT_ERROR("tessera/clock", message.c_str());
     }
     return sc_core::sc_time(picoseconds, sc_core::SC_PS);

@@ -33,7 +33,7 @@ void declare_unit_keys(const Keys& key, const std::string& leaf, const std::stri
 template <typename Keys, typename Select>
 void declare_memory_keys(const Keys& key, const std::string& leaf, const std::string& name, Select memory) {
     key.add_number(
-        leaf + "_ports", [memory](auto& t) -> auto& { return memory(t).ports; }, "entries a cycle", {1, 64},
+        leaf + "_ports", [memory](auto& t) -> auto& { return memory(t).ports; }, "entries per cycle", {1, 64},
         name + ": ports of each bank");
     key.add_number(
         leaf + "_banks", [memory](auto& t) -> auto& { return memory(t).banks; }, "-", {1, 64}, name + ": banks");
@@ -41,7 +41,7 @@ void declare_memory_keys(const Keys& key, const std::string& leaf, const std::st
         leaf + "_latency", [memory](auto& t) -> auto& { return memory(t).latency; }, "cycles", {0, most_places},
         name + ": latency, from an entry's address to its data");
     key.add_number(
-        leaf + "_width", [memory](auto& t) -> auto& { return memory(t).width; }, "bytes a cycle", {0, 64},
+        leaf + "_width", [memory](auto& t) -> auto& { return memory(t).width; }, "bytes per cycle", {0, 64},
         name + ": width of a port; 0: a whole entry");
     key.add_number(
         leaf + "_buffer", [memory](auto& t) -> auto& { return memory(t).buffer; }, "requests", {1, most_places},
@@ -49,8 +49,8 @@ void declare_memory_keys(const Keys& key, const std::string& leaf, const std::st
     key.add_number(
         leaf + "_cache_bytes", [memory](auto& t) -> auto& { return memory(t).cache.bytes; }, "bytes", {0, 1 << 30},
         name +
-            ": size of its cache, at least a line, which has the ports, banks and latency above, with the table in "
-            "off-chip memory; 0: the table is on chip");
+            ": size of the cache in front of it, at least a line; the cache has the ports, banks and latency above, and "
+            "the table is in off-chip memory; 0: the table is on chip");
     key.add_number(
         leaf + "_line_bytes", [memory](auto& t) -> auto& { return memory(t).cache.line_bytes; }, "bytes", {1, 4096},
         name + ": size of a cache line, rounded down to whole entries, at least one");
@@ -59,7 +59,7 @@ void declare_memory_keys(const Keys& key, const std::string& leaf, const std::st
         name + ": associativity of its cache");
     key.add_number(
         leaf + "_cache_fills", [memory](auto& t) -> auto& { return memory(t).cache.fills; }, "lines", {1, most_places},
-        name + ": most outstanding fills of its cache, and requests that wait for them");
+        name + ": largest number of outstanding fills of its cache, and of requests that wait for them");
 }
 
 /// Declares the members of Timing as keys of a job file and as parameters of CCI, with one call for each:
@@ -100,7 +100,7 @@ void declare_timing_keys(const Keys& key) {
         ", not including table reads");
     key.add_number(
         "highlight_test_latency", [](auto& t) -> auto& { return t.highlight_test_latency; }, "cycles", {0, most_cycles},
-        "Highlight Test, if there is one: added to the Normal Test's latency");
+        "Highlight Test, if present: added to the Normal Test's latency");
     declare_unit_keys(
         key, "view_test", "View Test", [](auto& t) -> auto& { return t.view_test; });
     key.add_number(
@@ -142,8 +142,8 @@ void declare_timing_keys(const Keys& key) {
         "off_chip_latency", [](auto& t) -> auto& { return t.off_chip_memory.latency; }, "cycles", {0, most_places},
         "Off-chip memory: latency, from a request's last byte to its answer");
     key.add_number(
-        "off_chip_bandwidth", [](auto& t) -> auto& { return t.off_chip_memory.bandwidth; }, "bytes a cycle", {1, 4096},
-        "Off-chip memory: bandwidth, both directions together");
+        "off_chip_bandwidth", [](auto& t) -> auto& { return t.off_chip_memory.bandwidth; }, "bytes per cycle",
+        {1, 4096}, "Off-chip memory: bandwidth, both directions combined");
     key.add_number(
         "off_chip_buffer", [](auto& t) -> auto& { return t.off_chip_memory.buffer; }, "requests", {1, most_places},
         "Off-chip memory: capacity of its request buffer");

@@ -218,10 +218,10 @@ void GetTriangle::step() {
 std::string GetTriangle::describe_contents() const {
     std::string text;
     if (sending_)
-        text = "triangle " + std::to_string(taken_.origin.pass) + ", not all of it sent";
+        text = "triangle " + std::to_string(taken_.origin.pass) + ", partly sent";
     if (!from_host.empty())
         text = listed(text, below_watermark_ ? "a host triangle"
-                                             : "a host triangle it may not take: the queue is at its watermark");
+                                             : "a host triangle, not accepted because the queue is at its watermark");
     return listed(text, from_triangle_queue.empty() ? "" : "a triangle from the queue");
 }
 

@@ -51,7 +51,7 @@ void PassOrTessellate::open(const TakenTriangle& taken) {
 
 void PassOrTessellate::take(Incomplete& place, const ScreenPoint& part) {
     if ((place.geometry_left & part.tag.bit()) == 0)
-        SC_REPORT_ERROR("tessera/pass_or_tessellate", "a part of a triangle came twice");
+        SC_REPORT_ERROR("tessera/pass_or_tessellate", "a part of a triangle arrived twice");
     place.geometry_left = static_cast<Parts>(place.geometry_left & ~part.tag.bit());
     datapath::TrianglePass& pass = place.triangle.pass;
     const unsigned k = part.tag.index();
@@ -69,7 +69,7 @@ void PassOrTessellate::take(Incomplete& place, const ScreenPoint& part) {
 
 void PassOrTessellate::take(Incomplete& place, const TestedEdge& edge) {
     if ((place.tests_left & edge.tag.bit()) == 0)
-        SC_REPORT_ERROR("tessera/pass_or_tessellate", "a part of a triangle came twice");
+        SC_REPORT_ERROR("tessera/pass_or_tessellate", "a part of a triangle arrived twice");
     place.tests_left = static_cast<Parts>(place.tests_left & ~edge.tag.bit());
     datapath::TrianglePass& pass = place.triangle.pass;
     const unsigned k = edge.tag.index();
@@ -97,7 +97,7 @@ void PassOrTessellate::b_transport_from_tests(TestedEdge& edge, sc_core::sc_time
 PassOrTessellate::Incomplete& PassOrTessellate::place_of(const PartTag& tag) {
     Incomplete* place = incomplete_.find(tag.triangle);
     if (place == nullptr)
-        SC_REPORT_ERROR("tessera/pass_or_tessellate", "a part came of a triangle that did not come itself");
+        SC_REPORT_ERROR("tessera/pass_or_tessellate", "a part arrived for a triangle that has not arrived");
     return *place;
 }
 
@@ -126,7 +126,7 @@ PassOrTessellate::Incomplete* PassOrTessellate::open_place(const PartTag& tag, s
         return nullptr;
     const TakenTriangle& next = from_get_triangle.front();
     if (next.tag != tag.triangle)
-        SC_REPORT_ERROR("tessera/pass_or_tessellate", "a part came of a triangle that did not come itself");
+        SC_REPORT_ERROR("tessera/pass_or_tessellate", "a part arrived for a triangle that has not arrived");
     open(next);
     from_get_triangle.pop();
     activity_.item_in(cycle);
@@ -237,7 +237,7 @@ std::string PassOrTessellate::describe_contents() const {
     std::size_t edges = 0;
     for (const StreamInput<TestedEdge>& input : from_tessellation_tests)
         edges += input.size();
-    add(count_of(edges, "tested edge") + (edges > 0 ? " that came before its triangle's place" : ""));
+    add(count_of(edges, "tested edge") + (edges > 0 ? " that arrived before its triangle had a place" : ""));
     return text;
 }
 

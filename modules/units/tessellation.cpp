@@ -58,7 +58,7 @@ std::string Tessellation::describe_contents() const {
     if (made_ > 0)
         text = std::to_string(made_ - sent_ + (to_triangle_queue.free() ? 0u : 1u)) + " of " + std::to_string(made_) +
                " children of a triangle";
-    return listed(text, from_pass_or_tessellate.empty() ? "" : "a triangle that waits");
+    return listed(text, from_pass_or_tessellate.empty() ? "" : "a waiting triangle");
 }
 
 void Tessellation::trace_signals(Signals& signals) const {

@@ -220,11 +220,11 @@ std::string TriangleQueue::describe_contents() const {
     if (off_chip_ > 0)
         text += ", " + std::to_string(off_chip_) + " of them off chip";
     if (!leaving_.empty())
-        text += ", " + std::to_string(leaving_.size()) + " of them on the way out";
+        text += ", " + std::to_string(leaving_.size()) + " of them leaving";
     if (from_tessellation.empty())
         return text;
     const std::string capacity = design_.capacity == 0 ? "" : " (capacity " + std::to_string(design_.capacity) + ")";
-    return listed(text, "no place for the next" + capacity, "; ");
+    return listed(text, "no room for the next" + capacity, "; ");
 }
 
 /// Shows the levels, spills and refills, and the triangle last read from the store.

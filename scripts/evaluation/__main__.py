@@ -24,12 +24,12 @@ NAMES = ["text_plane", "two_tests", "view_distances", "crater_lake", "rank_test"
 
 def options_from(arguments):
     parser = argparse.ArgumentParser(prog="scripts/figures", description="Runs the paper's evaluation on tessera.")
-    parser.add_argument("--output", type=Path, help="folder to leave (runs/figures; with --only runs/figures_only, so that the whole page stays)")
-    parser.add_argument("--only", action="append", choices=NAMES, metavar="NAME", help="this experiment; may be repeated")
-    parser.add_argument("--list", action="store_true", help="name the experiments and stop")
-    parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="runs at a time (all cores)")
+    parser.add_argument("--output", type=Path, help="output folder (runs/figures; with --only runs/figures_only, which keeps the whole page)")
+    parser.add_argument("--only", action="append", choices=NAMES, metavar="NAME", help="run only this experiment; may be repeated")
+    parser.add_argument("--list", action="store_true", help="list the experiments and exit")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="parallel runs (all cores)")
     parser.set_defaults(slurm=False, group=1)
-    parser.add_argument("--picture-width", type=int, default=800, help="pixels (%(default)s)")
+    parser.add_argument("--picture-width", type=int, default=800, help="width of pictures in pixels (%(default)s)")
     parser.add_argument("--program", type=Path, default=ROOT / "build/release/testbench/commands/tessera",
                         help=argparse.SUPPRESS)
     options = parser.parse_args(arguments)
@@ -95,8 +95,8 @@ def main():
     names = [name for name in NAMES if not options.only or name in options.only]
     for taken in ("pictures", "tables", "runs"):
         if (options.output / taken).exists() and not (options.output / "index.html").is_file():
-            print(f"scripts/figures: --output {options.output}: {options.output / taken} would be replaced, and no evaluation left "
-                  "it: there is no index.html beside it; choose another folder", file=sys.stderr)
+            print(f"scripts/figures: --output {options.output}: {options.output / taken} would be replaced, but is not from an "
+                  "evaluation: there is no index.html beside it; choose another folder", file=sys.stderr)
             return 2
     options.output.mkdir(parents=True, exist_ok=True)
     held = lock(options.output, "scripts/figures")

@@ -19,7 +19,7 @@ class EmittedMesh:
         return self.texture[self.triangles].mean(axis=1)
 
     def smallest_angles(self):
-        """In degrees, of the displaced triangles."""
+        """Smallest angles of the displaced triangles, in degrees."""
         corners = [self.positions[self.triangles[:, k]] for k in range(3)]
         angles = []
         for k in range(3):
@@ -63,13 +63,13 @@ def values_at(mesh, image):
 
 def density_in(mesh, region):
     """Triangles per unit of texture area where `region` (a boolean image of the map, top row first) is true, counted by
-    their centres. The ratio between regions shows where the detail is."""
+    their centres. Ratios between regions show where the detail is."""
     share = region.mean()
     return float(values_at(mesh, region).sum() / share) if share > 0 else 0.0
 
 
 def on_screen(positions, camera):
-    """Pixels from the picture's centre, and depths. camera: of an effective job."""
+    """Pixels from the picture's centre, and depths. camera: that of an effective job."""
     eye, target, up = (np.array(camera[name], float) for name in ("eye", "target", "up"))
     forward = (target - eye) / np.linalg.norm(target - eye)
     right = np.cross(forward, up)

@@ -1,4 +1,4 @@
-"""What GPUs have had since 2009 (Direct3D 11): a triangle patch has an integer factor for each edge, and is uniform inside."""
+"""The tessellator of GPUs since 2009 (Direct3D 11): a triangle patch has an integer factor for each edge, and is uniform inside."""
 import numpy as np
 
 from emitted_mesh import on_screen
@@ -58,13 +58,13 @@ def strip(outer, inner):
 
 
 def screen_lengths(positions, camera):
-    """Function of two vertices: pixels between them."""
+    """A function of two vertices that returns the distance between them in pixels."""
     seen, _ = on_screen(positions, camera)
     return lambda a, b: float(np.linalg.norm(seen[a] - seen[b]))
 
 
 def write_obj(path, base, length, pixels):
-    """A plane's triangles, undisplaced, cut by their edges' lengths on the screen. Both patches of an edge cut it equally."""
+    """A plane's triangles, undisplaced, cut according to their edges' lengths on the screen. Both patches of an edge cut it in the same way."""
     lines, faces, numbers, cut = ["vn 0 0 1\n"], [], {}, {}
     corners = np.hstack([base.positions[:, :2], base.texture])
     for a, b, c in base.triangles:

@@ -1,6 +1,6 @@
 """Runs of the program, on the engine of sweeps, and their results: figures, errors, pictures, meshes.
 
-measure() of an experiment names its runs, yields, and then reads them. What all experiments have named runs together.
+measure() of an experiment declares its runs, yields, and then reads their results. The runs of all experiments are executed together.
 """
 import json
 import shlex
@@ -36,13 +36,13 @@ class Study:
 
     def run(self, name, job=None, settings=None, error=False, keep=True):
         """job: a name in testbench/examples/jobs, or None for the half donut. error: measured as `tessera compare` does.
-        keep: the files stay, for meshes, pictures and frames."""
+        keep: keep the files, for meshes, pictures and frames."""
         job, settings = job and JOBS / f"{job}.toml", {**self.QUIET, **(settings or {})}
         return self.add(name, [self._content(job, settings), error], run_commands(self.program, job, settings, error), keep)
 
     def tune(self, name, triangles, job=None, tests="normal,summed_height", settings=None, grid=None, metric=None, run=True):
         """A run with the thresholds (and, with `grid`, the base mesh) of least error for a number of triangles; without `run`
-        what `tessera tune` found."""
+        only the result of `tessera tune`."""
         job, settings, tuned = job and JOBS / f"{job}.toml", settings or {}, f"{FOLDER}/tuned.toml"
         tune = self.words("tune", job, "--triangles", triangles, "--tests", tests, "--output", tuned, grid and "--grid", grid,
                           metric and "--metric", metric, *set_options(settings))
@@ -50,7 +50,7 @@ class Study:
                         [tune, *(run_commands(self.program, tuned, self.QUIET, True) if run else [])])
 
     def bake(self, name, surface, mesh=None):
-        """A run on the map that a surface file gives over the mesh of another file."""
+        """A run on the map baked from a surface file, over the mesh of another file."""
         bake = self.words("bake", surface, mesh and "--mesh", mesh, "--output", f"{FOLDER}/{name}.exr")
         return self.add(name, [[file_hash(file) for file in (surface, mesh) if file], self.QUIET],
                         [bake, *run_commands(self.program, f"{FOLDER}/{name}.job.toml", self.QUIET, True)])
@@ -67,13 +67,13 @@ class Study:
         return self.hash.job(effective_job(self.program, job, settings), job.parent if job else Path())
 
     def add(self, name, content, commands, keep=True):
-        """content: what the result depends on."""
+        """content: everything that the result depends on."""
         self.runs.append(Run(self, name, Task(self.hash.address(content, keep), commands, keep)))
         return self.runs[-1]
 
     @property
     def commands(self):
-        """As the page shows them."""
+        """In the form shown on the page."""
         return [self.nameless(shlex.join(word.replace(FOLDER, f"{self.place}/{run.name}") for word in
                                          [Path(command[0]).name, *command[1:]]))
                 for run in self.runs for command in run.task.commands]
@@ -131,7 +131,7 @@ class Run:
 
     @property
     def tuned(self):
-        """What `tessera tune` found."""
+        """The result of `tessera tune`."""
         self.finished()
         return json.loads((self.files / "tuned.json").read_text())
 

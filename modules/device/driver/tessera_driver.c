@@ -194,12 +194,12 @@ int tessera_last_error(struct tessera_driver* driver, uint64_t* address) {
 
 const char* tessera_text(int result) {
     static const char* const own[] = {"no error",
-                                      "the bus answered by an error",
+                                      "the bus returned an error",
                                       "no such device",
                                       "still busy",
                                       "a read-only register",
                                       "no such register",
-                                      "refused: a frame, or a reset, is under way"};
+                                      "refused: a frame or a reset is in progress"};
     static const char* const of_device[TESSERA_ERRORS] = {TESSERA_ERROR_TEXTS};
     if (result > 0 && result < TESSERA_ERRORS)
         return of_device[result];

@@ -6,7 +6,7 @@
  * Offsets are the same in every design; widths are those of the default formats. */
 #include <stdint.h>
 
-/* Offsets in bytes. Of a register of two words the lower one comes first. */
+/* Offsets in bytes. In a two-word register the lower word comes first. */
 #define TESSERA_ID 0x000u
 #define TESSERA_VERSION 0x004u
 #define TESSERA_CONTROL 0x008u
@@ -107,54 +107,54 @@
 #define TESSERA_REGISTER_BYTES 0x400u
 
 /* Bits of control registers. */
-#define TESSERA_CONTROL_START (1u << 0)  /* begins a frame */
-#define TESSERA_CONTROL_RESET (1u << 1)  /* stops a frame and gives all registers their reset values */
-#define TESSERA_STATUS_BUSY (1u << 0)  /* a frame is under way, or a reset waits for the machine to be empty */
+#define TESSERA_CONTROL_START (1u << 0)  /* starts a frame */
+#define TESSERA_CONTROL_RESET (1u << 1)  /* stops a frame and sets all registers to their reset values */
+#define TESSERA_STATUS_BUSY (1u << 0)  /* a frame is being processed, or a reset is waiting for the machine to drain */
 #define TESSERA_STATUS_DONE (1u << 1)  /* the last frame is complete: all its triangles are in memory */
 #define TESSERA_STATUS_ERROR (1u << 2)  /* the last frame was refused or stopped: see error */
-#define TESSERA_STATUS_RESETTING (1u << 3)  /* busy with a reset */
+#define TESSERA_STATUS_RESETTING (1u << 3)  /* a reset is in progress */
 #define TESSERA_INTERRUPT_DONE (1u << 0)  /* a frame was completed */
 #define TESSERA_INTERRUPT_ERROR (1u << 1)  /* a frame was refused or stopped */
 #define TESSERA_FETCH_DISPLACEMENT_MAP (1u << 0)  /* the next frame fetches this table */
-#define TESSERA_FETCH_NORMAL_MAP (1u << 1)  /* likewise */
-#define TESSERA_FETCH_SUMMED_HEIGHT_TABLE (1u << 2)  /* likewise */
+#define TESSERA_FETCH_NORMAL_MAP (1u << 1)  /* the next frame fetches this table */
+#define TESSERA_FETCH_SUMMED_HEIGHT_TABLE (1u << 2)  /* the next frame fetches this table */
 #define TESSERA_FEATURES_HIGHLIGHT (1u << 0)  /* a Highlight Test */
-#define TESSERA_FEATURES_FINAL_EDGES (1u << 1)  /* a queue entry says which of its edges are final */
-#define TESSERA_FEATURES_CODES (1u << 2)  /* a vertex carries its displacement code */
-#define TESSERA_FEATURES_FAMILIES (1u << 3)  /* a machine of families */
-#define TESSERA_FEATURES_BILINEAR (1u << 4)  /* maps are read between four texels */
-#define TESSERA_FEATURES_RANK_TEST (1u << 5)  /* a Rank Test in the Summed Height Test's place */
-#define TESSERA_FEATURES_CURVATURE_TEST (1u << 6)  /* a Curvature Test there */
-#define TESSERA_FEATURES_DISTANCES (1u << 7)  /* the Rank Test judges errors as the viewer sees them */
-#define TESSERA_FEATURES_MIPMAP_TEST (1u << 12)  /* a Mipmap Test there */
+#define TESSERA_FEATURES_FINAL_EDGES (1u << 1)  /* queue entries mark final edges */
+#define TESSERA_FEATURES_CODES (1u << 2)  /* vertices carry displacement codes */
+#define TESSERA_FEATURES_FAMILIES (1u << 3)  /* the family design */
+#define TESSERA_FEATURES_BILINEAR (1u << 4)  /* bilinear filter for the maps */
+#define TESSERA_FEATURES_RANK_TEST (1u << 5)  /* a Rank Test in place of the Summed Height Test */
+#define TESSERA_FEATURES_CURVATURE_TEST (1u << 6)  /* a Curvature Test in its place */
+#define TESSERA_FEATURES_DISTANCES (1u << 7)  /* a view-dependent Rank Test */
+#define TESSERA_FEATURES_MIPMAP_TEST (1u << 12)  /* a Mipmap Test in its place */
 
 /* Register `error`. */
 enum tessera_error {
     TESSERA_ERROR_NONE = 0,  /* no error */
-    TESSERA_ERROR_BAD_VALUE = 1,  /* refused: a value that its register does not allow; its offset */
-    TESSERA_ERROR_BAD_MAP_SIZE = 2,  /* refused: a map of no texels or a larger one than the device's; the offset */
-    TESSERA_ERROR_BAD_ADDRESS = 3,  /* refused: not a multiple of 4, or what lies there reaches beyond 2^64; the offset of the register */
-    TESSERA_ERROR_BAD_RING_SIZE = 4,  /* refused: a ring without a place; the offset */
-    TESSERA_ERROR_TABLE_READ = 5,  /* stopped: the bus answered a read of a table by an error; the address */
-    TESSERA_ERROR_TRIANGLE_READ = 6,  /* stopped: likewise of a base triangle; the address */
-    TESSERA_ERROR_BAD_TRIANGLE = 7,  /* stopped: a base triangle's value beyond its format; the record's address */
-    TESSERA_ERROR_RING_WRITE = 8,  /* stopped: the bus answered a write to the ring by an error; the address */
-    TESSERA_ERROR_QUEUE_FULL = 9,  /* stopped: more triangles would wait than the Triangle Queue's memory holds; 0 */
-    TESSERA_ERROR_MACHINE_STOPPED = 10,  /* stopped for good: the machine's clock has halted, and no reset helps; 0 */
+    TESSERA_ERROR_BAD_VALUE = 1,  /* refused: an invalid register value; the register's offset */
+    TESSERA_ERROR_BAD_MAP_SIZE = 2,  /* refused: an empty map, or one larger than the device supports; the register's offset */
+    TESSERA_ERROR_BAD_ADDRESS = 3,  /* refused: an address that is not a multiple of 4, or data that extend beyond 2^64; the register's offset */
+    TESSERA_ERROR_BAD_RING_SIZE = 4,  /* refused: a ring of size 0; the register's offset */
+    TESSERA_ERROR_TABLE_READ = 5,  /* stopped: bus error on a read of a table; the address */
+    TESSERA_ERROR_TRIANGLE_READ = 6,  /* stopped: bus error on a read of a base triangle; the address */
+    TESSERA_ERROR_BAD_TRIANGLE = 7,  /* stopped: a value of a base triangle does not fit its format; the record's address */
+    TESSERA_ERROR_RING_WRITE = 8,  /* stopped: bus error on a write to the ring; the address */
+    TESSERA_ERROR_QUEUE_FULL = 9,  /* stopped: the waiting triangles would not fit the Triangle Queue's memory; 0 */
+    TESSERA_ERROR_MACHINE_STOPPED = 10,  /* stopped permanently: the machine's clock has halted, and a reset has no effect; 0 */
 };
 #define TESSERA_ERRORS 11
 #define TESSERA_ERROR_TEXTS \
     "no error", \
-    "refused: a value that its register does not allow; its offset", \
-    "refused: a map of no texels or a larger one than the device's; the offset", \
-    "refused: not a multiple of 4, or what lies there reaches beyond 2^64; the offset of the register", \
-    "refused: a ring without a place; the offset", \
-    "stopped: the bus answered a read of a table by an error; the address", \
-    "stopped: likewise of a base triangle; the address", \
-    "stopped: a base triangle's value beyond its format; the record's address", \
-    "stopped: the bus answered a write to the ring by an error; the address", \
-    "stopped: more triangles would wait than the Triangle Queue's memory holds; 0", \
-    "stopped for good: the machine's clock has halted, and no reset helps; 0"
+    "refused: an invalid register value; the register's offset", \
+    "refused: an empty map, or one larger than the device supports; the register's offset", \
+    "refused: an address that is not a multiple of 4, or data that extend beyond 2^64; the register's offset", \
+    "refused: a ring of size 0; the register's offset", \
+    "stopped: bus error on a read of a table; the address", \
+    "stopped: bus error on a read of a base triangle; the address", \
+    "stopped: a value of a base triangle does not fit its format; the record's address", \
+    "stopped: bus error on a write to the ring; the address", \
+    "stopped: the waiting triangles would not fit the Triangle Queue's memory; 0", \
+    "stopped permanently: the machine's clock has halted, and a reset has no effect; 0"
 
 /* Records in bus memory: little-endian words. */
 struct tessera_base_vertex {
@@ -164,7 +164,7 @@ struct tessera_base_vertex {
     int32_t nx;  /* N, normal's format; no component beyond 1.0 in magnitude */
     int32_t ny;
     int32_t nz;
-    int32_t tx;  /* T, likewise */
+    int32_t tx;  /* T, same format and limit as N */
     int32_t ty;
     int32_t tz;
     int32_t handedness;  /* 1 or -1: bitangent = handedness (N x T) */
@@ -186,7 +186,7 @@ struct tessera_finished_triangle {
     struct tessera_finished_vertex vertices[3];
 };
 
-/* X(name, offset, bits, words, is signed, writable) of every register. */
+/* X(name, offset, bits, words, is signed, writable) for every register. */
 #define TESSERA_REGISTER_LIST(X) \
     X(ID, 0x000u, 32, 1, 0, 0) \
     X(VERSION, 0x004u, 32, 1, 0, 0) \
@@ -286,11 +286,11 @@ struct tessera_finished_triangle {
     X(TESTS_CURVATURE_THRESHOLD, 0x240u, 37, 2, 0, 1) \
     X(TESTS_MIPMAP_THRESHOLD, 0x248u, 17, 1, 0, 1)
 
-/* Every register's number: a place in that list. */
+/* Numbers of the registers: their positions in that list. */
 enum tessera_register {
 #define TESSERA_NUMBER(name, offset, bits, words, is_signed, writable) TESSERA_REGISTER_##name,
     TESSERA_REGISTER_LIST(TESSERA_NUMBER)
 #undef TESSERA_NUMBER
-    TESSERA_REGISTERS  /* how many */
+    TESSERA_REGISTERS  /* number of registers */
 };
 /* NOLINTEND(readability-identifier-naming,modernize-deprecated-headers) */

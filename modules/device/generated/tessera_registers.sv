@@ -295,40 +295,40 @@ package tessera_registers;
   localparam logic [16:0] TESTS_MIPMAP_THRESHOLD_RESET = 17'h0;
 
   // Bits of control registers.
-  localparam int unsigned CONTROL_START_BIT = 0;  // begins a frame
-  localparam int unsigned CONTROL_RESET_BIT = 1;  // stops a frame and gives all registers their reset values
-  localparam int unsigned STATUS_BUSY_BIT = 0;  // a frame is under way, or a reset waits for the machine to be empty
+  localparam int unsigned CONTROL_START_BIT = 0;  // starts a frame
+  localparam int unsigned CONTROL_RESET_BIT = 1;  // stops a frame and sets all registers to their reset values
+  localparam int unsigned STATUS_BUSY_BIT = 0;  // a frame is being processed, or a reset is waiting for the machine to drain
   localparam int unsigned STATUS_DONE_BIT = 1;  // the last frame is complete: all its triangles are in memory
   localparam int unsigned STATUS_ERROR_BIT = 2;  // the last frame was refused or stopped: see error
-  localparam int unsigned STATUS_RESETTING_BIT = 3;  // busy with a reset
+  localparam int unsigned STATUS_RESETTING_BIT = 3;  // a reset is in progress
   localparam int unsigned INTERRUPT_DONE_BIT = 0;  // a frame was completed
   localparam int unsigned INTERRUPT_ERROR_BIT = 1;  // a frame was refused or stopped
   localparam int unsigned FETCH_DISPLACEMENT_MAP_BIT = 0;  // the next frame fetches this table
-  localparam int unsigned FETCH_NORMAL_MAP_BIT = 1;  // likewise
-  localparam int unsigned FETCH_SUMMED_HEIGHT_TABLE_BIT = 2;  // likewise
+  localparam int unsigned FETCH_NORMAL_MAP_BIT = 1;  // the next frame fetches this table
+  localparam int unsigned FETCH_SUMMED_HEIGHT_TABLE_BIT = 2;  // the next frame fetches this table
   localparam int unsigned FEATURES_HIGHLIGHT_BIT = 0;  // a Highlight Test
-  localparam int unsigned FEATURES_FINAL_EDGES_BIT = 1;  // a queue entry says which of its edges are final
-  localparam int unsigned FEATURES_CODES_BIT = 2;  // a vertex carries its displacement code
-  localparam int unsigned FEATURES_FAMILIES_BIT = 3;  // a machine of families
-  localparam int unsigned FEATURES_BILINEAR_BIT = 4;  // maps are read between four texels
-  localparam int unsigned FEATURES_RANK_TEST_BIT = 5;  // a Rank Test in the Summed Height Test's place
-  localparam int unsigned FEATURES_CURVATURE_TEST_BIT = 6;  // a Curvature Test there
-  localparam int unsigned FEATURES_DISTANCES_BIT = 7;  // the Rank Test judges errors as the viewer sees them
-  localparam int unsigned FEATURES_MIPMAP_TEST_BIT = 12;  // a Mipmap Test there
+  localparam int unsigned FEATURES_FINAL_EDGES_BIT = 1;  // queue entries mark final edges
+  localparam int unsigned FEATURES_CODES_BIT = 2;  // vertices carry displacement codes
+  localparam int unsigned FEATURES_FAMILIES_BIT = 3;  // the family design
+  localparam int unsigned FEATURES_BILINEAR_BIT = 4;  // bilinear filter for the maps
+  localparam int unsigned FEATURES_RANK_TEST_BIT = 5;  // a Rank Test in place of the Summed Height Test
+  localparam int unsigned FEATURES_CURVATURE_TEST_BIT = 6;  // a Curvature Test in its place
+  localparam int unsigned FEATURES_DISTANCES_BIT = 7;  // a view-dependent Rank Test
+  localparam int unsigned FEATURES_MIPMAP_TEST_BIT = 12;  // a Mipmap Test in its place
 
   // Register error.
   typedef enum logic [3:0] {
     ERROR_NONE = 4'd0,  // no error
-    ERROR_BAD_VALUE = 4'd1,  // refused: a value that its register does not allow; its offset
-    ERROR_BAD_MAP_SIZE = 4'd2,  // refused: a map of no texels or a larger one than the device's; the offset
-    ERROR_BAD_ADDRESS = 4'd3,  // refused: not a multiple of 4, or what lies there reaches beyond 2^64; the offset of the register
-    ERROR_BAD_RING_SIZE = 4'd4,  // refused: a ring without a place; the offset
-    ERROR_TABLE_READ = 4'd5,  // stopped: the bus answered a read of a table by an error; the address
-    ERROR_TRIANGLE_READ = 4'd6,  // stopped: likewise of a base triangle; the address
-    ERROR_BAD_TRIANGLE = 4'd7,  // stopped: a base triangle's value beyond its format; the record's address
-    ERROR_RING_WRITE = 4'd8,  // stopped: the bus answered a write to the ring by an error; the address
-    ERROR_QUEUE_FULL = 4'd9,  // stopped: more triangles would wait than the Triangle Queue's memory holds; 0
-    ERROR_MACHINE_STOPPED = 4'd10  // stopped for good: the machine's clock has halted, and no reset helps; 0
+    ERROR_BAD_VALUE = 4'd1,  // refused: an invalid register value; the register's offset
+    ERROR_BAD_MAP_SIZE = 4'd2,  // refused: an empty map, or one larger than the device supports; the register's offset
+    ERROR_BAD_ADDRESS = 4'd3,  // refused: an address that is not a multiple of 4, or data that extend beyond 2^64; the register's offset
+    ERROR_BAD_RING_SIZE = 4'd4,  // refused: a ring of size 0; the register's offset
+    ERROR_TABLE_READ = 4'd5,  // stopped: bus error on a read of a table; the address
+    ERROR_TRIANGLE_READ = 4'd6,  // stopped: bus error on a read of a base triangle; the address
+    ERROR_BAD_TRIANGLE = 4'd7,  // stopped: a value of a base triangle does not fit its format; the record's address
+    ERROR_RING_WRITE = 4'd8,  // stopped: bus error on a write to the ring; the address
+    ERROR_QUEUE_FULL = 4'd9,  // stopped: the waiting triangles would not fit the Triangle Queue's memory; 0
+    ERROR_MACHINE_STOPPED = 4'd10  // stopped permanently: the machine's clock has halted, and a reset has no effect; 0
   } error_e;
 
   // Words of a vertex's record in bus memory.

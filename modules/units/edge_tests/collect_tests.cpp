@@ -41,7 +41,7 @@ template <class Result>
 void CollectTests::take(StreamInput<Result>& input) {
     const PartTag& tag = input.front().tag;
     if (tag.triangle != leaving_.tag.triangle || tag.part != leaving_.tag.part)
-        SC_REPORT_ERROR("tessera/collect_tests", "the tests decided different edges");
+        SC_REPORT_ERROR("tessera/collect_tests", "the tests' results belong to different edges");
     add_result(leaving_, input.front());
     input.pop();
 }
@@ -79,7 +79,7 @@ std::string CollectTests::describe_contents() const {
     std::string text = count(from_normal_test, "normal_test") + count(from_tex_coord_test, "tex_coord_test") +
                        count(from_summed_height_test, "summed_height_test") + count(from_view_test, "view_test");
     if (leaves_)
-        text += "1 edge that Pass or Tessellate does not take, ";
+        text += "1 edge that Pass or Tessellate does not accept, ";
     return text.empty() ? text : text.substr(0, text.size() - 2);
 }
 

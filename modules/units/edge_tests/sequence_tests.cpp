@@ -58,7 +58,7 @@ bool SequenceTests::take_edge(std::uint64_t cycle) {
     add_result(edge.tested, from_view_test.front());
     for (const PartTag& tag : {edge.height.tag, from_tex_coord_test.front().tag, from_view_test.front().tag})
         if (tag.triangle != edge.tested.tag.triangle || tag.part != edge.tested.tag.part)
-            SC_REPORT_ERROR("tessera/sequence_tests", "the tests decided different edges");
+            SC_REPORT_ERROR("tessera/sequence_tests", "the tests' results belong to different edges");
     edge.next = after_cheap_tests(edge);
     normal_operands.pop();
     height_operands.pop();
@@ -111,7 +111,7 @@ bool SequenceTests::take_result(StreamInput<Result>& input, Next expected) {
         return false;
     Edge* const edge = in_test(input.front().tag, expected);
     if (edge == nullptr)
-        SC_REPORT_ERROR("tessera/sequence_tests", "a test decided an edge that it was not asked for");
+        SC_REPORT_ERROR("tessera/sequence_tests", "a result for an edge that was not sent to the test");
     add_result(edge->tested, input.front());
     edge->next = expected == Next::normal_result ? after_normal_test(*edge) : after_height_test(edge->tested);
     input.pop();
@@ -173,7 +173,7 @@ std::string SequenceTests::describe_contents() const {
         text = listed(text, input.empty() ? "" : std::to_string(input.size()) + " " + what);
     };
     if (vertex_waits_)
-        text = listed(text, "a vertex that the Normal Test does not take");
+        text = listed(text, "a vertex that the Normal Test does not accept");
     count(normal_operands, "from calculate_new_u");
     count(height_operands, "from calculate_new_u for summed_height_test");
     count(from_tex_coord_test, "from tex_coord_test");

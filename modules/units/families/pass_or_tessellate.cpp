@@ -39,7 +39,7 @@ void FamilyPassOrTessellate::open(const Family& family) {
 
 void FamilyPassOrTessellate::take(Place& place, const TestedEdge& edge) {
     if ((place.left & edge.tag.bit()) == 0)
-        SC_REPORT_ERROR("tessera/pass_or_tessellate", "an edge of a family came twice");
+        SC_REPORT_ERROR("tessera/pass_or_tessellate", "an edge of a family arrived twice");
     place.left = static_cast<Parts>(place.left & ~edge.tag.bit());
     place.found[edge.tag.part - first_edge_part] = edge.found;
 }
@@ -52,7 +52,7 @@ void FamilyPassOrTessellate::b_transport_from_tessellation(Family& family, sc_co
 void FamilyPassOrTessellate::b_transport_from_tests(TestedEdge& edge, sc_core::sc_time& delay) {
     Place* place = places_.find(edge.tag.triangle);
     if (place == nullptr)
-        SC_REPORT_ERROR("tessera/pass_or_tessellate", "an edge came of a family that did not come itself");
+        SC_REPORT_ERROR("tessera/pass_or_tessellate", "an edge arrived for a family that has not arrived");
     take(*place, edge);
     finish_if_complete(*place, delay);
 }
@@ -260,8 +260,8 @@ std::string FamilyPassOrTessellate::describe_contents() const {
         edges += input.size();
     text = listed(text, count_of(lit_.size() + queued_.size(), "decided triangle"), "; ");
     text = listed(text, from_tessellation.holds_back() ? "a family that waits for a place" : "", "; ");
-    return listed(text, count_of(edges, "tested edge") + (edges > 0 ? " that came before its family's place" : ""),
-                  "; ");
+    return listed(
+        text, count_of(edges, "tested edge") + (edges > 0 ? " that arrived before its family had a place" : ""), "; ");
 }
 
 /// Shows the family decided last, and which of its children split.

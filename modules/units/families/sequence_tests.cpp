@@ -70,7 +70,7 @@ bool FamilySequenceTests::take_edge(std::size_t lane, std::uint64_t cycle) {
     for (const PartTag& tag :
          {edge.height.tag, from_tex_coord_test[lane].front().tag, from_view_test[lane].front().tag})
         if (!same_part(tag, edge.tested.tag))
-            SC_REPORT_ERROR("tessera/sequence_tests", "the tests decided different edges");
+            SC_REPORT_ERROR("tessera/sequence_tests", "the tests' results belong to different edges");
     normal_operands[lane].pop();
     height_operands[lane].pop();
     from_tex_coord_test[lane].pop();
@@ -89,7 +89,7 @@ bool FamilySequenceTests::take_results() {
     const auto take = [&](Ring<Edge>& in_test, auto& input, auto&& next) {
         for (; !input.empty(); input.pop()) {
             if (in_test.empty() || !same_part(in_test.front().tested.tag, input.front().tag))
-                SC_REPORT_ERROR("tessera/sequence_tests", "a test decided an edge that it was not asked for");
+                SC_REPORT_ERROR("tessera/sequence_tests", "a result for an edge that was not sent to the test");
             add_result(in_test.front().tested, input.front());
             decided(in_test.front(), next(in_test.front()));
             in_test.pop();
@@ -186,7 +186,7 @@ std::string FamilySequenceTests::describe_contents() const {
     count(in_height_.size(), "edge", " in it");
     count(leaving_.size(), "decided edge", "");
     for (std::size_t lane = 0; lane < lanes_.size(); ++lane) {
-        count(to_pass_or_tessellate[lane].free() ? 0 : 1, "edge", " that Pass or Tessellate does not take");
+        count(to_pass_or_tessellate[lane].free() ? 0 : 1, "edge", " that Pass or Tessellate does not accept");
         count(normal_operands[lane].size(), "edge", " from calculate_new_u");
         count(height_operands[lane].size(), "edge", " from calculate_new_u for summed_height_test");
         count(from_tex_coord_test[lane].size(), "result", " from tex_coord_test");

@@ -38,7 +38,7 @@ void FamilyTessellation::open(Joined& joined, const TakenTriangle& taken) {
 
 void FamilyTessellation::take(Joined& joined, const ScreenPoint& part) {
     if (part.tag.triangle != joined.taken.tag || (joined.left & part.tag.bit()) == 0)
-        SC_REPORT_ERROR("tessera/tessellation", "a part came twice, or of a triangle that did not come itself");
+        SC_REPORT_ERROR("tessera/tessellation", "a part arrived twice, or for a triangle that has not arrived");
     joined.left = static_cast<Parts>(joined.left & ~part.tag.bit());
     const unsigned k = part.tag.index();
     datapath::Vertex& vertex = joined.taken.triangle.vertices[k];
@@ -106,7 +106,7 @@ void FamilyTessellation::b_transport_from_get_triangle(TakenTriangle& taken, sc_
 void FamilyTessellation::b_transport_from_transform(ScreenPoint& part, sc_core::sc_time& delay) {
     Joined* joined = joined_.find(part.tag.triangle);
     if (joined == nullptr)
-        SC_REPORT_ERROR("tessera/tessellation", "a part came of a triangle that did not come itself");
+        SC_REPORT_ERROR("tessera/tessellation", "a part arrived for a triangle that has not arrived");
     take(*joined, part);
     joined->latest = std::max(joined->latest, delay);
     if (joined->left != 0)
@@ -223,9 +223,9 @@ std::string FamilyTessellation::describe_contents() const {
     std::string text;
     if (!joined_.empty())
         text = "triangle " + std::to_string(joined_.oldest().taken.origin.pass) +
-               (joined_.oldest().left == 0 ? ", complete" : ", not all parts of it have come");
+               (joined_.oldest().left == 0 ? ", complete" : ", waiting for parts");
     if (sending_)
-        text = listed(text, "triangle " + std::to_string(sent_.family.origin.pass) + ", not all edges of it sent");
+        text = listed(text, "triangle " + std::to_string(sent_.family.origin.pass) + ", partly sent");
     return listed(text, count_of(from_get_triangle.size(), "triangle") +
                             (from_get_triangle.empty() ? "" : " that wait for their parts"));
 }

@@ -21,7 +21,7 @@ SHORE = 20  # texels
 UNEVEN = 5  # m
 RMS, MAXIMUM = "vertical.rms_map", "vertical.max_map"
 # A triangle's stopped_by: the tests that prevented splits requested by the Normal or Summed Height Test.
-WHY_WHOLE = {"neither Normal nor Summed Height Test asked": 0, "Tex Coord Test": 8, "Generation Test": 16,
+WHY_WHOLE = {"no split requested by Normal or Summed Height Test": 0, "Tex Coord Test": 8, "Generation Test": 16,
              "Tex Coord Test and Generation Test": 24}
 
 
@@ -64,7 +64,7 @@ def largest_part(seeds, within):
 
 def regions_of(height):
     """The lake has the map's most frequent height, within the survey's error; slopes at that height are excluded, since
-    they are not flat. The island is the land without a connection over land to the map's border."""
+    they are not flat. The island is the land that is not connected over land to the map's border."""
     level = np.bincount(height.ravel()).argmax()
     at_level = np.abs(height - level) <= UNEVEN
     water = largest_part(~grown(~at_level, 3), at_level)
@@ -84,8 +84,8 @@ def reference_curves(path, surface=None):
 
 
 def vertical_errors(mesh, height, scale=1000):
-    """At every grid point (texel centre, row 0 on top): the mesh's height minus the map's, in m, and its triangle; -1 without
-    one. scale: metres per model unit."""
+    """At every grid point (texel centre, row 0 on top): the mesh's height minus the map's, in m, and the triangle there, or
+    -1. scale: metres per model unit."""
     rows, columns = height.shape
     errors, owner = np.zeros(height.shape), np.full(height.shape, -1)
     x, y, z = (values[mesh.triangles].T for values in (mesh.texture[:, 0] * columns - 0.5, (1 - mesh.texture[:, 1]) * rows - 0.5,
@@ -122,8 +122,8 @@ def worst_spot(run, finest):
     camera = {"eye": [float(x) for x in ground + (0.9, -1.3, 1.3)], "target": [float(x) for x in ground], "field_of_view": 38,
               "whole_viewport": True}
     return [Picture(run.render("error", "worst_spot", **camera),
-                    f"The worst spot, in the middle: {run.error[MAXIMUM]:.0f} m off vertically (colours: distance to the surface); "
-                    f"its triangle was kept whole by: {run.error['worst_vertical.why_whole']}"),
+                    f"The worst spot, in the middle: {run.error[MAXIMUM]:.0f} m vertical error (colours: distance to the surface); "
+                    f"its triangle was not split because of: {run.error['worst_vertical.why_whole']}"),
             Picture(finest.render("wireframe", "worst_spot_of_the_other", **camera),
                     f"The same place with {finest.triangles:,} triangles")]
 
@@ -158,7 +158,7 @@ def at_equal_triangles(points, triangles, column=1):
 
 
 def low_counts(rows, references):
-    """The claim of low triangle counts, compared with the other midpoint method and the best of the other methods."""
+    """The claim of low triangle counts, compared with the other midpoint method and with the best of the other methods."""
     found, ratios = [], {}
     for method in ("rtin", "terra"):
         pairs = [(row, at_equal_triangles(references[method], row[1])) for row in rows]
@@ -185,7 +185,7 @@ def measure(study):
                      tests["summed_height_threshold"] if tests["summed_height"] else "off",
                      tests["summed_height_unit"], tests["generation_limit"]])
     references = reference_curves(OTHER_METHODS)
-    against = ("; others: greedy insertion (terra, hmm), quadric simplification (meshoptimizer), edges split at midpoints by the "
+    against = ("; others: greedy insertion (terra, hmm), quadric simplification (meshoptimizer), edges split at midpoints according to the "
                "true error (rtin)")
     for column, name in ((1, "RMS"), (2, "maximum")):
         series = {"tessera": ([row[1] for row in rows], [row[3 + column] for row in rows])}
@@ -202,8 +202,8 @@ def measure(study):
     whole = {where: float((generation == 0).mean()) for where, generation in generation_on.items()}
     section.claims = [
         Claim("The island and the crater's edge are represented with a high level of detail.", "section 4, figure 11 (a)",
-              f"triangles per area of the map at {shown.triangles:,} triangles: island against water "
-              f"{density['island'] / density['water']:.1f}, rim against water {density['rim'] / density['water']:.1f}; against the "
+              f"triangles per area of the map at {shown.triangles:,} triangles: island relative to water "
+              f"{density['island'] / density['water']:.1f}, rim relative to water {density['rim'] / density['water']:.1f}; relative to the "
               f"land beyond the rim {density['island'] / land:.1f} and {density['rim'] / land:.1f}",
               reproduced_if(min(density["island"], density["rim"]) > 1.5 * max(density["water"], land))),
         Claim("The water is left at the resolution of the original mesh.", "section 4, figure 11 (a)",
@@ -215,27 +215,27 @@ def measure(study):
     section.pictures = [
         Picture(shown.render("shaded"), f"Crater Lake, {shown.triangles:,} triangles"),
         Picture(shown.render("wireframe"), "Its triangles"),
-        Picture(shown.render("error"), "Where the error is (distance to the surface)"),
-        Picture(shown.render("stopped"), "Why edges were not split that a test would have split"),
+        Picture(shown.render("error"), "Its error (distance to the surface)"),
+        Picture(shown.render("stopped"), "Tests that prevented splits requested by another test"),
         *worst_spot(shown, runs[BUDGETS[-1]])]
     squares = {budget: squares_by(runs[budget], height, regions) for budget in LIMITS_AT}
     of_shown = squares[SHOWN]
-    asked = {budget: 100 - of["reasons"]["neither Normal nor Summed Height Test asked"][3] for budget, of in squares.items()}
+    asked = {budget: 100 - of["reasons"]["no split requested by Normal or Summed Height Test"][3] for budget, of in squares.items()}
     section.notes.append(
-        f"What limits it: at {SHOWN:,} triangles {100 - asked[SHOWN]:.0f} % of the squared error lies in triangles of which neither "
-        "test asked to split an edge at the thresholds that the budget allows. "
-        + " ".join(f"At {budget:,}, edges that a test wanted to split and another stopped carry {share:.0f} %."
+        f"Causes of the error: at {SHOWN:,} triangles {100 - asked[SHOWN]:.0f} % of the squared error is in triangles for which neither "
+        "test requested a split at the thresholds that the budget allows. "
+        + " ".join(f"At {budget:,}, triangles for which one test requested a split and another stopped it have {share:.0f} % of it."
                    for budget, share in asked.items())
         + " By region: " + ", ".join(f"{name} {share:.0f} %" for name, share in of_shown["regions"].items())
         + "; by generation: " + ", ".join(f"{g}: {share:.0f} %" for g, share in of_shown["generations"].items())
-        + f". The worst hundredth of the grid points holds {of_shown['worst']:.0f} %. The worst spot itself was kept whole by: "
+        + f". The worst hundredth of the grid points has {of_shown['worst']:.0f} %. The triangle at the worst spot was not split because of: "
         f"{shown.error['worst_vertical.why_whole']}.")
     section.tables = [
         Table("crater_lake_curve", "Thresholds tuned for a budget of triangles",
               [("budget", "triangles"), ("triangles", ""), ("base mesh", ""), ("base triangles", ""), ("RMS error", "m"),
                ("maximum error", "m"), ("Normal Test threshold", ""), ("Summed Height Test threshold", ""),
                ("its unit", ""), ("generation limit", "")], rows),
-        Table("crater_lake_limits", "Triangles by what kept their edges whole, and the vertical error in them",
+        Table("crater_lake_limits", "Triangles by the reason why they were not split, and the vertical error in them",
               [("budget", "triangles"), ("kept whole by", ""), ("triangles", ""), ("grid points in them", "%"),
                ("RMS error there", "m"), ("share of the squared error", "%")],
               [[budget, name, *values] for budget, of in squares.items() for name, values in of["reasons"].items()]),
@@ -246,5 +246,5 @@ def measure(study):
 
 
 EXPERIMENT = Experiment("crater_lake", "Crater Lake", "Figure 11a",
-                        "Real terrain: triangles gather at the island and the rim, and how far the mesh is from the ground.",
+                        "Real terrain: where the triangles are concentrated, and the distance of the mesh from the ground.",
                         measure)

@@ -26,9 +26,9 @@ def measure(study):
     section.tables.append(Table("curved_surfaces", "Baked surfaces",
                                 [("surface", ""), ("base triangles", ""), ("triangles", ""), ("RMS error", "texel"),
                                  ("maximum error", "texel")], rows))
-    section.notes.append("As in the paper, a patch's control points hold heights over the base mesh only.")
+    section.notes.append("As in the paper, a patch's control points contain only heights over the base mesh.")
     return section
 
 
 EXPERIMENT = Experiment("curved_surfaces", "Curved surfaces as displacement maps", "Section 2.7",
-                        "The host samples a surface into a map; the hardware does the rest.", measure)
+                        "The host samples a surface into a map, which the hardware renders.", measure)

@@ -35,7 +35,7 @@ def measure(study):
     host_and_queue = usual["get_triangle.host_triangles"] + usual["get_triangle.queue_triangles"]
     section.claims.append(Claim(
         "On chip or off, the memory of the Triangle Queue is a significant requirement.", "section 3",
-        "; ".join(f"{order}: at most {queues[order, 0][2]:,} triangles wait; with room for 64 on chip "
+        "; ".join(f"{order}: at most {queues[order, 0][2]:,} triangles wait; with an on-chip capacity of 64, "
                   f"{queues[order, 64][4]:,} bytes are spilled, and the run takes {queues[order, 64][5]:,} cycles instead of "
                   f"{queues[order, 0][5]:,}" for order in ("fifo", "lifo")),
         MEASURED))
@@ -43,17 +43,17 @@ def measure(study):
         Table("queue", "Order and capacity of the Triangle Queue, half donut, 264 x 264",
               [("order", ""), ("capacity", "triangles"), ("most waiting", "triangles"), ("most on chip", "triangles"),
                ("spilled", "byte"), ("cycles", "")], list(queues.values())),
-        Table("one_pass", "Two base triangles and their children: from which latency of Transform on it shows",
+        Table("one_pass", "Two base triangles and their children: cycles by latency of Transform",
               [("latency of Transform", "cycles"), ("1 table port", "cycles"), ("4 table ports", "cycles")],
               [[latency, *(one_pass[latency, ports].figures["timing.cycles"] for ports in (1, 4))]
                for latency in TRANSFORM_LATENCIES]),
         Table("displace_latency", "Latency of Displace Vertex", [("latency", "cycles"), ("cycles", "")],
               [[latency, run.figures["timing.cycles"]] for latency, run in displace.items()]),
-        Table("stays", "The paper's design: mean stay of an item, waiting included", [("unit", ""), ("stay", "cycles")],
+        Table("stays", "The paper's design: mean stay of an item, including waiting", [("unit", ""), ("stay", "cycles")],
               [[unit, usual[f"timing.{unit}.latency"]] for unit in STAYS])]
-    section.notes.append(f"{usual['get_triangle.host_triangles']} of {host_and_queue:,} triangles taken are the host's.")
+    section.notes.append(f"{usual['get_triangle.host_triangles']} of {host_and_queue:,} triangles taken are from the host.")
     return section
 
 
 EXPERIMENT = Experiment("designs", "Other queues and latencies", "Section 3",
-                        "What order and capacity of the queue and the latencies of units cost in cycles.", measure)
+                        "Cost in cycles of the queue's order and capacity, and of the units' latencies.", measure)

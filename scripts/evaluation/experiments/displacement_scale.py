@@ -9,7 +9,7 @@ FINE = {"tests.view_threshold": 1, "tests.normal_threshold": 0.05}
 # Runs for comparing the host's traffic: name, and the difference from the first.
 CASES = {
     "S grows from 0": {},
-    "S stays, only the camera moves": {"frames.first_scale": SCALE},
+    "S constant, only the camera moves": {"frames.first_scale": SCALE},
     "S grows, finer thresholds": FINE,
     "S grows, map of 64 x 64": {"map.width": 64, "map.height": 64},
     "S grows, map of 64 x 64, finer thresholds": {"map.width": 64, "map.height": 64, **FINE},
@@ -56,9 +56,9 @@ def measure(study):
                                         f"S = {float(frame['displacement_scale']):g}: {int(frame['triangles']):,} triangles"))
     first, later = rows[0], rows[-1]
     section.claims = [Claim(
-        "The displacement can be scaled; the normal map is computed anew for each scale.", "section 5.1",
+        "The displacement can be scaled; the normal map is recomputed for each scale.", "section 5.1",
         f"the host sends {first[-2]:,} bytes for the first frame and {later[-2]:,} for a later one, {later[5]:,} of them the "
-        f"normal map; the displacement map and the Summed Height Table stay. Sent whole, the last frame's mesh would be "
+        f"normal map; the displacement map and the Summed Height Table are not sent again. The last frame's tessellated mesh would be "
         f"{later[-1]:,} bytes.",
         reproduced_if(later[4] == 0 and later[6] == 0 and later[5] > 0 and later[1] > first[1]))]
     cases = traffic(runs)
@@ -68,16 +68,16 @@ def measure(study):
                                                            for row in cases) + ".",
         REPRODUCED if len(less(cases)) == len(cases) else PARTLY if less(cases) else NOT_REPRODUCED))
     section.notes += [
-        "Let B be the bytes of the base mesh, N of the normal map, T of all tables, M of a tessellated mesh, indexed. While S "
-        "stays, n frames cost T + n B against n M: the host sends less from n > T / (M - B) frames on. If S changes in every "
-        "frame the normal map is sent each time, T - N + n (B + N): less only if M > B + N, from n > (T - N) / (M - B - N) "
-        "frames on. With 6 bytes of normal map a texel and some 24 bytes a triangle that takes more than a triangle to "
-        "four texels, whatever the number of frames.",
-        "Of these the host sends less where " + "; ".join(less(cases)) + "." if less(cases) else
-        "In none of these does the host send less.",
-        "The Summed Height Test compares heights of the map, whatever the scale: with S = 0 it still splits."]
+        "Let B be the bytes of the base mesh, N of the normal map, T of all tables, M of an indexed tessellated mesh. With a "
+        "constant S, n frames cost T + n B against n M: the host sends less for n > T / (M - B) frames. If S changes in every "
+        "frame the normal map is sent each time, and n frames cost T - N + n (B + N): less only if M > B + N, for "
+        "n > (T - N) / (M - B - N) frames. With 6 bytes of normal map per texel and about 24 bytes per triangle this requires "
+        "more than one triangle per four texels, for any number of frames.",
+        "The host sends less in these cases: " + "; ".join(less(cases)) + "." if less(cases) else
+        "The host does not send less in any of these cases.",
+        "The Summed Height Test compares heights of the map, independently of the scale: with S = 0 it still splits."]
     section.tables.append(Table(
-        "host_traffic", f"What the host sends for {FRAMES} frames of the half donut, and what the tessellated meshes would cost",
+        "host_traffic", f"Bytes that the host sends for {FRAMES} frames of the half donut, and bytes of the tessellated meshes",
         [("frames", ""), ("texels", ""), ("triangles, last frame", ""), ("first frame", "byte"), ("a later one", "byte"),
          ("its mesh, tessellated", "byte"), ("all frames", "byte"), ("all meshes", "byte"), ("sent / meshes", "")], cases))
     section.tables.append(Table(
@@ -88,5 +88,5 @@ def measure(study):
     return section
 
 
-EXPERIMENT = Experiment("displacement_scale", "The displacement's scale between frames", "Section 5.1",
-                        "What changes for the host when S does.", measure)
+EXPERIMENT = Experiment("displacement_scale", "The displacement scale between frames", "Section 5.1",
+                        "The host's traffic when S changes.", measure)

@@ -1,4 +1,4 @@
-"""The fifth test, which the paper does not have: results without it."""
+"""The fifth test, which is not in the paper: results without it."""
 from section import Experiment, Claim, Section, Table, Chart, reproduced_if
 import charts
 
@@ -23,14 +23,14 @@ def measure(study):
     section.claims.append(Claim(
         "The Tex Coord Test stops the recursive subdivision at the map's resolution.", "section 2.5",
         (f"without the Generation Test the half donut ends with {unlimited.triangles:,} triangles" if ended else
-         f"without the Generation Test the half donut passes {TRIANGLES:,} triangles and is stopped")
-        + f"; with it, {rows[-2][1]:,} at the default limit of 12. Midpoints that creep along a long edge pass the Tex "
-        "Coord Test long after the triangle is smaller than a texel. The fifth test is edge-only too, and ends every recursion.",
+         f"without the Generation Test the half donut exceeds {TRIANGLES:,} triangles and is stopped")
+        + f"; with it, {rows[-2][1]:,} at the default limit of 12. Midpoints that advance along a long edge pass the Tex "
+        "Coord Test long after the triangle is smaller than a texel. The fifth test also depends on the edge alone, and ends every recursion.",
         reproduced_if(ended and unlimited.triangles < 2 * rows[-2][1])))
     section.charts.append(Chart(
         charts.lines({"half donut": ([row[1] for row in rows], [row[3] for row in rows])},
                      "triangles", "RMS error, texels", log_x=True, log_y=True),
-        "Error against triangles as the generation limit rises from 2 to 15"))
+        "Error against triangles for generation limits from 2 to 15"))
     section.tables.append(Table("generation_limit", "Generation limits, without the View Test",
                                 [("limit", ""), ("triangles", ""), ("edges tested", ""), ("RMS error", "texel"),
                                  ("maximum error", "texel"), ("triangles with an angle below 1 degree", "")], rows))
@@ -38,4 +38,4 @@ def measure(study):
 
 
 EXPERIMENT = Experiment("generation_limit", "The Generation Test", "tessera's addition",
-                        "A fifth, edge-only test bounds the depth of the recursion.", measure)
+                        "A fifth test, which depends on the edge alone, bounds the depth of the recursion.", measure)

@@ -23,13 +23,13 @@ def measure(study):
             f"neither ({off[2]:,})",
             REPRODUCED if on[4] < 0.8 * equal[4] else NOT_REPRODUCED)],
         pictures=[Picture(run.render("wireframe"), f"The half donut with the Highlight Test: {run.triangles:,} triangles"),
-                  Picture(run.render("test"), "Which test split a triangle's parent")],
-        tables=[Table("highlight_test", "Per-vertex against per-texel specular light, exponent 32",
+                  Picture(run.render("test"), "Triangles by the test that split their parent")],
+        tables=[Table("highlight_test", "Per-vertex compared with per-texel specular light, exponent 32",
                       [("Highlight Test", ""), ("Normal Test threshold", ""), ("triangles", ""), ("RMS error", "full scale"),
                        ("RMS error in the highlight", "full scale"), ("largest error", "full scale"),
                        ("density in the highlight", "triangles / texel"), ("density elsewhere", "triangles / texel")], rows)],
-        notes=["The paper names the test and gives no formula; tessera's definition is in modules/DECISIONS.md."])
+        notes=["The paper names the test without a formula; tessera's definition is in modules/DECISIONS.md."])
 
 
 EXPERIMENT = Experiment("highlight_test", "The Highlight Test", "Section 5.1",
-                        "Where light is computed per vertex, a highlight needs more triangles than the shape does.", measure)
+                        "With per-vertex lighting, a highlight needs more triangles than the shape.", measure)

@@ -23,16 +23,16 @@ def measure(study):
     savings = [row[5] for row in rows]
     section.claims.append(Claim(
         "Displacement mapping as a primitive can significantly reduce the bottleneck of sending triangle data.", "section 5",
-        "; ".join(f"{row[0]}: {row[5]:,.0f} times fewer bytes a frame, "
+        "; ".join(f"{row[0]}: {row[5]:,.0f} times fewer bytes per frame, "
                   + (f"tables paid for in {-(-row[6] // 1):,.0f} frame{'s' if row[6] > 1 else ''}" if row[6] > 0 else
                      "tables never paid for") for row in rows),
         reproduced_if(min(savings) > 2)))
-    section.notes.append("All this while the displacement's scale stays. One that changes in every frame has the normal map "
-                         "sent each time, and the host may send more than the tessellated meshes: see the displacement's scale "
+    section.notes.append("These figures are for a constant displacement scale. If the scale changes in every frame, the normal map is "
+                         "sent each time, and the host may send more than the tessellated meshes: see the displacement scale "
                          "between frames.")
     section.charts.append(Chart(charts.bars([row[0] for row in rows], savings,
                                             "bytes of the tessellated mesh / bytes of the base mesh"),
-                                "Saving per frame, once the tables are there"))
+                                "Saving per frame, after the tables have been sent"))
     section.tables.append(Table(
         "host_bandwidth", "Bytes from the host",
         [("job", ""), ("base mesh, three vertices a triangle", "byte"), ("tables, once", "byte"), ("triangles", ""),

@@ -1,4 +1,4 @@
-"""Designs that leave out tests which cannot change a decision: the same mesh in fewer cycles."""
+"""Designs that omit tests which cannot change a decision: the same mesh in fewer cycles."""
 from section import Chart, Claim, Experiment, Section, Table, MEASURED, FAILED
 from .tests_units import QUIET
 import charts
@@ -56,7 +56,7 @@ def measure(study):
     section.claims.append(Claim(
         "A decision depends on the edge alone.", "section 2",
         f"the mesh files of {', '.join(different)} differ between designs" if different else
-        "so tests that cannot change it may be left out: the mesh files of all designs are the same, byte for byte. Cycles per "
+        "so tests that cannot change it may be omitted: the mesh files of all designs are the same, byte for byte. Cycles per "
         "finished triangle, the paper's design and hardware.design = \"modern\": "
         + "; ".join(f"{job}: {cycles[job, next(iter(DESIGNS))]:.1f} and {cycles[job, MODERN]:.2f}" for job in JOBS),
         FAILED if different else MEASURED))
@@ -65,14 +65,14 @@ def measure(study):
         charts.lines({job: ([area[job, design] for design in DESIGNS], [cycles[job, design] for design in DESIGNS])
                       for job in JOBS},
                      "bits of registers and of the Triangle Queue", "cycles per finished triangle", log_x=True, log_y=True),
-        "Cycles against area, one mark a design in the order of the table"))
+        "Cycles against area, one mark per design, in the order of the table"))
     section.tables.append(Table(
-        "ladder", "Per finished triangle, each design with what those above it have (final edges apart); the last two are several machines",
+        "ladder", "Per finished triangle; each design includes the changes of those above it (except final edges); the last two have several machines",
         [("job", ""), ("design", ""), ("cycles", ""), ("a triangle", "cycles"), ("edges tested", ""), ("Normal Tests", ""),
          ("Summed Height Tests", ""), ("table reads", ""), ("multipliers", ""), ("registers", "bits"), ("queue", "bits"), ("tables", "bits"), ("table ports", ""),
          ("bottleneck", "")], rows))
     return section
 
 
-EXPERIMENT = Experiment("ladder", "Leaving out what is done twice", "Sections 2 and 3",
-                        "What a design gains that evaluates only the tests its decisions depend on, and tests a triangle's children together.", measure)
+EXPERIMENT = Experiment("ladder", "Omitting repeated work", "Sections 2 and 3",
+                        "Cycles of designs that evaluate only the tests a decision depends on, and test a triangle's children together.", measure)

@@ -33,7 +33,7 @@ def measure(study):
             figures = runs[name, bandwidth].figures
             meshes.add(figures["mesh.sha256"])
             triangles = figures["mesh.triangles"]
-            where = f"{bandwidth} bytes a cycle" if bandwidth else "on chip"
+            where = f"{bandwidth} bytes per cycle" if bandwidth else "on chip"
             cycles[f"{name}, {where}"] = figures["timing.cycles_per_triangle"]
             hits = [figures[f"{table}.cache_hit_rate"] if bandwidth else "" for table in TABLES]
             fetched = sum(figures[f"{table}.bytes_fetched"] for table in TABLES) / triangles if bandwidth else 0
@@ -45,11 +45,11 @@ def measure(study):
     section.claims.append(Claim(
         "The tables are read from off-chip memory.", "section 3",
         f"the mesh files of {', '.join(wrong)} differ" if wrong else
-        "the mesh files are the same, byte for byte, whether the tables are on chip or behind caches of "
+        "the mesh files are the same, byte for byte, with the tables on chip and behind caches of "
         + ", ".join(f"{size} KiB ({table.replace('_', ' ')})" for table, size in TABLES.items())
         + f". With 100 cycles of latency {min(row[6] for row in rows if row[6]):.0f} to {max(row[6] for row in rows):.0f} bytes "
-        "of tables are fetched per finished triangle. Sending the finished mesh instead would take "
-        f"{max(row[7] for row in rows):.0f} bytes per triangle, from the host.",
+        "of tables are fetched per finished triangle. Sending the finished mesh from the host instead would take "
+        f"{max(row[7] for row in rows):.0f} bytes per triangle.",
         FAILED if wrong else MEASURED))
     section.charts.append(cycles_chart(cycles))
     section.tables.append(Table(
@@ -61,4 +61,4 @@ def measure(study):
 
 
 EXPERIMENT = Experiment("off_chip", "Tables in off-chip memory", "Section 3",
-                        "What caches, latency and bandwidth cost a design whose tables do not fit on chip.", measure)
+                        "The cost of caches, latency and bandwidth in a design whose tables do not fit on chip.", measure)

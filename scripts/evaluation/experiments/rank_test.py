@@ -1,4 +1,4 @@
-"""Rank and Bound Test on Crater Lake: tables of several widths, a bound that holds, and the view from the rim."""
+"""Rank and Bound Test on Crater Lake: tables of several widths, a guaranteed bound, and the view from the rim."""
 import numpy as np
 
 from emitted_mesh import on_screen
@@ -27,7 +27,7 @@ def with_bounds(bound, bits=16):
 
 
 def from_the_rim(study):
-    """Runs by method; of a bound the pixels it promises."""
+    """Runs by method; for a bound also its guarantee in pixels."""
     def seen(view, settings):
         return {**RIM, "hardware.test_order": "cheap_first", "tests.rank_view": view, **settings}
 
@@ -45,7 +45,7 @@ def from_the_rim(study):
 
 
 def seen_errors(run, height):
-    """Triangles, and in pixels the RMS and the largest distance of the grid points in the picture from where the mesh has them."""
+    """Triangles, and the RMS and largest distance in pixels between a grid point and the mesh's point, as they appear in the picture."""
     errors, owner = vertical_errors(run.mesh, height)
     (rows, columns), camera = height.shape, run.job["camera"]
     x, y = np.meshgrid((np.arange(columns) + 0.5) / columns - 0.5, 0.5 - (np.arange(rows) + 0.5) / rows)
@@ -62,7 +62,7 @@ def least_with(errors, triangles):
 
 
 def frontier(errors):
-    """Those that no other beats with fewer triangles."""
+    """The errors that are lower than all those with fewer triangles."""
     best = []
     for error in sorted(errors):
         if not best or error[1] < best[-1][1]:
@@ -77,18 +77,18 @@ def add_view_from_the_rim(section, height, ranks, bounds, papers):
     papers = frontier(seen_errors(run, height) for run in papers)
     series = {name: list(zip(*(error[:2] for error in errors))) for name, errors in (
         ("Rank Test, per point", ranks["per_point"]), ("Rank Test, per pixel", ranks["per_pixel"]), ("Bound Test", bounds.values()),
-        ("the paper's tests, the best of a sweep", papers))}
+        ("the paper's tests, best of a sweep", papers))}
     section.charts.append(Chart(charts.lines(series, "triangles", "RMS error in the picture, pixels", True, True, ("Rank Test, per point",)),
                                 "From the crater's rim: RMS distance in the picture between a grid point and the mesh"))
     parts = [least_with(ranks["per_point"], budget) / least_with(papers, budget) for budget in SEEN_BUDGETS]
     worst = max(largest / bound for bound, (*_, largest) in bounds.items())
     section.claims += [
-        Claim("From the crater's rim the Rank Test's error in the picture is at most half of that of the paper's tests.",
-              "modules/DECISIONS.md", ", ".join(f"{part:.2f} of it with {budget:,} triangles" for part, budget in zip(parts, SEEN_BUDGETS)),
+        Claim("From the crater's rim the Rank Test's error in the picture is at most half of the error of the paper's tests.",
+              "modules/DECISIONS.md", ", ".join(f"{part:.2f} of that error with {budget:,} triangles" for part, budget in zip(parts, SEEN_BUDGETS)),
               reproduced_if(max(parts) <= 0.5)),
         Claim("No grid point in the picture appears farther from the mesh than the bound.", "modules/DECISIONS.md",
               f"{len(bounds)} runs: at most {worst:.3f} of the bound", reproduced_if(worst <= 1))]
-    section.pictures.append(Picture(shown.render("wireframe"), "From the rim, as the Rank Test sees it"))
+    section.pictures.append(Picture(shown.render("wireframe"), "From the rim, with the view-dependent Rank Test"))
     section.tables.append(Table(
         "rank_view", "From the crater's rim",
         [("test", ""), ("triangles", ""), ("RMS error", "pixel"), ("maximum error", "pixel"), ("promised", "pixel")],
@@ -120,5 +120,5 @@ def measure(study):
     return section
 
 
-EXPERIMENT = Experiment("rank_test", "One table entry an edge", "beyond the paper",
-                        "The Rank and Bound Tests: how many bits they need, a bound that holds, and triangles as the viewer sees them.", measure)
+EXPERIMENT = Experiment("rank_test", "One table entry per edge", "beyond the paper",
+                        "The Rank and Bound Tests: how many bits they need, a guaranteed bound, and view-dependent thresholds.", measure)

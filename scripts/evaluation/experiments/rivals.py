@@ -1,4 +1,4 @@
-"""Error against triangles of every test, the paper's rivals (2.3.1) and a tessellator as GPUs have it; cycles, reads and bits of
+"""Error against triangles for every test, the paper's alternatives (2.3.1) and a GPU tessellator; cycles, reads and bits of
 each test; precalculated points (2.5)."""
 from pathlib import Path
 from typing import NamedTuple
@@ -46,7 +46,7 @@ CURVES = {BESIDE + SUMMED: ("normal,summed_height", {}),  # the paper's
           BOUND: ("rank", {**BY_RANK, "formats.rank_bits": 0, "formats.bound_bits": 16})}
 ALONE = {SUMMED: ("summed_height", {}), **{name: ("mipmap", filtered) for name, filtered in RIVALS.items()}}
 TESTS = {**CURVES, **ALONE}
-PATCHES = "factor an edge, as on GPUs"
+PATCHES = "edge factors, as on GPUs"
 UNSPLIT = {"hardware.height_test": "summed_height", "hardware.triangulation": "shorter", "tests.normal": False, "tests.summed_height": False}
 REFERENCES = {"rtin": "RTIN", "hmm": "greedy insertion"}
 FITTED = (0.0885, 0.039, 0.0158)
@@ -60,7 +60,7 @@ def settings_of(test):
 
 
 def found_settings(run):
-    """What `tessera tune` found."""
+    """The result of `tessera tune`."""
     return {**{f"tests.{name}": value for name, value in run.tuned["tests"].items()}, "hardware.triangulation": run.tuned["triangulation"]}
 
 
@@ -87,7 +87,7 @@ def errors_of(run, surface, height):
 
 
 def move_to_points(mesh, height):
-    """The mesh with its vertices at the map's points under them, in its place."""
+    """Moves the mesh's vertices, in place, to the map's points under them."""
     rows, columns = height.shape
     x = np.clip((mesh.texture[:, 0] * columns).astype(int), 0, columns - 1)
     y = np.clip((mesh.texture[:, 1] * rows).astype(int), 0, rows - 1)
@@ -96,7 +96,7 @@ def move_to_points(mesh, height):
 
 
 def multiple(curve, mesh):
-    """How many times a mesh's triangles a curve has at its RMS error, by a power law."""
+    """The number of triangles of a curve at a mesh's RMS error, relative to the mesh's triangles, by a power law."""
     points = sorted((np.log(point[1]), np.log(point[0])) for point in curve)
     if np.log(mesh[1]) < points[0][0]:
         return f"more than {max(curve)[0] / mesh[0]:.1f}"
@@ -104,7 +104,7 @@ def multiple(curve, mesh):
 
 
 def add_patches(study, bases):
-    """Runs on meshes that a GPU's tessellator makes, by surface. They are not split further; the machine displaces them."""
+    """Runs on meshes made by a GPU tessellator, by surface. They are not split further; the machine displaces them."""
     runs = {surface: [] for surface in bases}
     for surface, base in bases.items():
         length = screen_lengths(base.mesh.positions, base.job["camera"])
@@ -147,7 +147,7 @@ def measure(study):
         curves[name].update(references_of(name))
     lake = maps["Crater Lake"]
     seen = [seen_errors(run, lake) for run in patches["Crater Lake"]]
-    add_curves(section, curves, "By the error in pixels, in Crater Lake's picture: " + ", ".join(
+    add_curves(section, curves, "By the error in pixels in the picture of Crater Lake: " + ", ".join(
         f"{multiple(seen, seen_errors(timed[test][0], lake))} of the {test}'s" for test in (BESIDE + SUMMED, RANK)))
     add_machines(section, timed)
     add_fitted(section, [[errors_of(run, "Crater Lake", lake) for run in pair] for pair in fitted])
@@ -184,16 +184,16 @@ def add_curves(section, curves, in_picture):
     against = {name: [point[1] / other for point in of[RANK] if (other := at_equal_triangles(of["RTIN"], point[0]))] for name, of in curves.items()}
     section.claims += [
         Claim("The averaging of mipmaps smooths over areas of detail; a maximal filter was proposed to overcome this.", "section 2.3.1",
-              "alone in the Summed Height Test's place. " + beside(""), reproduced_if(best(""))),
+              "each alone in place of the Summed Height Test. " + beside(""), reproduced_if(best(""))),
         Claim("The Normal Test with the Summed Height Test filters the map effectively, which is not possible with maximal mipmaps.",
-              "sections 2.3.1, 5", "each beside the Normal Test. " + beside(BESIDE), reproduced_if(best(BESIDE))),
-        Claim("A patch with a factor for each edge, from its length on the screen, and uniform inside, as GPUs have had since Direct3D 11.",
+              "sections 2.3.1, 5", "each together with the Normal Test. " + beside(BESIDE), reproduced_if(best(BESIDE))),
+        Claim("A patch with a factor for each edge, from its length on the screen, and uniform inside, as on GPUs since Direct3D 11.",
               "since the paper", f"triangles at equal RMS error, {multiples(BESIDE + SUMMED)}; {multiples(RANK)}. {in_picture}", MEASURED),
         Claim("The Rank Test's error is below RTIN's at every number of triangles.", "modules/DECISIONS.md",
               "; ".join(f"{name}: {min(parts):.2f} to {max(parts):.2f} times its RMS error" for name, parts in against.items()),
               reproduced_if(all(max(parts) < 1 for parts in against.values())))]
     section.tables.append(Table(
-        "rivals", f"At about {SHOWN:,} triangles: vertical error at every grid point; peers and GPU between two meshes",
+        "rivals", f"At about {SHOWN:,} triangles: vertical error at every grid point; other methods and GPU interpolated between two meshes",
         [("test", ""), *((column, unit) for name in at for column, unit in
                          ((f"{name}: triangles", ""), ("RMS", SURFACES[name].unit), ("largest", SURFACES[name].unit)))],
         [[test, *(figure for of in at.values() for figure in of[test])] for test in at["head"]]))
@@ -210,12 +210,12 @@ def add_machines(section, timed):
                       *(value for figures, read, run in zip(of, reads, runs) for value in
                         (read / figures["run.edges_tested"], read / run.triangles, figures["timing.cycles"] / run.triangles))]
     section.claims.append(Claim(
-        "The Summed Height Test takes four cycles a point, since each of four values must be read.", "section 3.1.3",
-        f"{rows[SUMMED][2]:.3g} entries an edge; cycles a triangle in the paper's design and in the modern one: "
+        "The Summed Height Test takes four cycles per point, since each of four values must be read.", "section 3.1.3",
+        f"{rows[SUMMED][2]:.3g} entries per edge; cycles per triangle in the paper's design and in the modern one: "
         + ", ".join(f"{test} {rows[test][4]:.1f} and {rows[test][7]:.1f}" for test in (*ALONE, "Curvature Test", RANK, BOUND)),
         reproduced_if(rows[SUMMED][2] == 12)))
     section.tables.append(Table(
-        "rivals_machine", "Crater Lake: entries read from the test's table, and cycles, in the paper's design and the modern one",
+        "rivals_machine", "Crater Lake: reads of the test's table, and cycles, in the paper's design and the modern one",
         [("test", ""), ("triangles", ""), ("table", "bit/texel"), *((column, "") for design in ("paper's design", "modern design") for column in
                                                                     (f"{design}: reads an edge", "reads a triangle", "cycles a triangle"))],
         [[test, *row] for test, row in rows.items()]))
@@ -224,7 +224,7 @@ def add_machines(section, timed):
 def add_fitted(section, fits):
     gains = [1 - after[1] / before[1] for before, after in fits]
     section.claims.append(Claim(
-        "Fitted heights take a seventh off the error of the same mesh.", "modules/DECISIONS.md",
+        "Fitted heights reduce the error of the same mesh by a seventh.", "modules/DECISIONS.md",
         ", ".join(f"{100 * gain:.0f} % with {before[0]:,} triangles" for gain, (before, _) in zip(gains, fits)), reproduced_if(min(gains) > 0.13)))
 
 
@@ -236,13 +236,13 @@ def add_points(section, points, height):
         move_to_points(nearest.mesh, height)
         rows.append([*row, errors_of(nearest, "Crater Lake", height)[1], between])
     section.claims.append(Claim(
-        "Precalculated points in place of midpoints and Tex Coord Test represent the map more accurately.", "section 2.5",
+        "Precalculated points in place of midpoints and the Tex Coord Test represent the map more accurately.", "section 2.5",
         "RMS error at midpoints and at the map's points: " + ", ".join("{1:.2f} and {2:.2f} m with {0:,} triangles".format(*row) for row in rows),
         reproduced_if(all(moved < midpoints for _, midpoints, moved, _ in rows))))
     section.tables.append(Table(
-        "rivals_points", "Crater Lake from 24 base triangles: RMS vertical error by where an inserted vertex lies",
+        "rivals_points", "Crater Lake from 24 base triangles: RMS vertical error by the position of an inserted vertex",
         [("triangles", ""), ("midpoint", "m"), ("precalculated point", "m"), ("midpoint, height between four texels", "m")], rows))
 
 
-EXPERIMENT = Experiment("rivals", "The paper's rivals, and hardware since", "Sections 2.3.1, 2.5",
-                        "Every test, mipmaps, precalculated points and a GPU's patches on three maps, and what each test costs.", measure)
+EXPERIMENT = Experiment("rivals", "The paper's alternatives, and later hardware", "Sections 2.3.1, 2.5",
+                        "Every test, mipmaps, precalculated points and a GPU's patches on three maps, and the cost of each test.", measure)

@@ -30,7 +30,7 @@ def measure(study):
     section.claims = [
         Claim("Any base mesh can be displaced: the half donut on the well-known Utah teapot.", "section 4, figure 11 (b)",
               f"{first.figures['host.base_triangles']} triangles of 32 Bezier patches became {first.triangles:,}: {cracks[first]} cracks and T-vertices. "
-              f"{seams[first]} emitted edges lie open where two patches' texture coordinates jump, so that the map is not "
+              f"{seams[first]} emitted edges are open where the texture coordinates jump between two patches, so that the map is not "
               "continuous across their border",
               NOT_REPRODUCED if cracks[first] else PARTLY if seams[first] else REPRODUCED),
         Claim("The mesh's state can be saved and another displacement added to it.", "section 4, figure 11 (c)",
@@ -38,7 +38,7 @@ def measure(study):
               f"mesh of a second map: {second.triangles:,} triangles, {cracks[second]} cracks and T-vertices, "
               f"{seams[second]} open texture seams",
               REPRODUCED if not cracks[second] and second.triangles > first.triangles else NOT_REPRODUCED)]
-    section.tables.append(Table("teapot", "Two maps, one on the other",
+    section.tables.append(Table("teapot", "Two maps, one on top of the other",
                                 [("map", ""), ("base triangles", ""), ("triangles", ""), ("edges tested", ""),
                                  ("base mesh", "byte")],
                                 [["half donut", *figures_of(first)], ["text on the result", *figures_of(second)]]))

@@ -52,26 +52,26 @@ def measure(study):
     hiding = [name for name, share in default.items() if share < 1]
     section.claims = [
         Claim("Transform's latency hides that of the Tessellation Tests, which run in parallel.", "section 3.1",
-              f"at the default latency of Transform, {DEFAULT_LATENCY} cycles, the join waits for the tests in "
+              f"at the default latency of Transform, {DEFAULT_LATENCY} cycles, the join waits for the tests for "
               + "; ".join(f"{share:.2g} % of all cycles with {name}" for name, share in default.items())
-              + ". In less than 1 % from this latency on: "
+              + ". Below 1 % from this latency on: "
               + "; ".join(f"{name}: " + (f"{latency} cycles" if latency else f"more than {LATENCIES[-1]}")
                           for name, latency in hidden.items())
               + ".",
               REPRODUCED if len(hiding) == len(default) else PARTLY if hiding else NOT_REPRODUCED),
-        Claim("Were more performance required because of several Transform pipelines, the Tessellation Tests unit could be "
-              "replicated three times, an edge each.", "section 3.1",
-              f"cycles a pass with one unit and three: {passes[1, 1]:.1f} and {passes[3, 1]:.1f} with one port to the "
+        Claim("If several Transform pipelines require more performance, the Tessellation Tests unit can be replicated three "
+              "times, one for each edge.", "section 3.1",
+              f"cycles per pass with one unit and three: {passes[1, 1]:.1f} and {passes[3, 1]:.1f} with one port to the "
               f"Summed Height Table, {passes[1, 12]:.2f} and {passes[3, 12]:.2f} with twelve. The bottleneck is "
               + "; ".join(f"{bottleneck} with {ports} port{'s' if ports > 1 else ''}"
                           for units, ports, *_, bottleneck in rows if units == 3)
-              + ": three rectangles of four reads an edge bind before the unit does. One Transform pipeline was enough in all.",
+              + ": the three rectangles of four reads per edge are the limit, not the unit. One Transform pipeline was enough in all runs.",
               MEASURED),
     ]
     section.charts.append(Chart(
         charts.lines({name: (LATENCIES, shares) for name, shares in waits.items()}, "latency of Transform, cycles",
                      "cycles in which the join waits for the tests, %", log_x=True),
-        "What of the tests' latency shows, half donut, 264 x 264"))
+        "Tests' latency that is not hidden, half donut, 264 x 264"))
     section.tables = [
         Table("tests_units", "Units and ports, half donut, 264 x 264",
               [("tests units", ""), ("table ports", ""), ("cycles", ""), ("a pass", "cycles"), ("a triangle", "cycles"),
@@ -83,4 +83,4 @@ def measure(study):
 
 
 EXPERIMENT = Experiment("tests_units", "One Tessellation Tests unit or three", "Section 3.1",
-                        "What a cycle-by-cycle run says about latency, throughput and the bottleneck.", measure)
+                        "Latency, throughput and the bottleneck in a cycle-accurate run.", measure)

@@ -1,4 +1,4 @@
-"""Section 2.5: the savings by the Tex Coord Test."""
+"""Section 2.5: the triangles that the Tex Coord Test saves."""
 from section import Claim, Experiment, Picture, Section, Table, NOT_REPRODUCED, PARTLY, REPRODUCED
 from .view_distances import LICENCE, SOURCE
 
@@ -36,10 +36,10 @@ def measure(study):
     of_noise = [saving for (name, _), saving in savings.items() if name == "noise"]
     section.claims.append(Claim(
         "On noisy maps such as hair the Tex Coord Test alone can halve the number of triangles.", "section 2.5",
-        "; ".join(f"{name}, View Test from {threshold} pixels: {100 * saving:.0f} % fewer triangles"
+        "; ".join(f"{name}, View Test threshold {threshold} pixels: {100 * saving:.0f} % fewer triangles"
                   for (name, threshold), saving in savings.items())
-        + ". The finer the View Test, the more it saves; what it leaves out are the steps between texels. Without it, it is the "
-        "Generation Test, which the paper does not have, that ends many edges (see the table).",
+        + ". The finer the View Test, the more triangles the test saves; it omits the steps between texels. Without it, many edges "
+        "are stopped by the Generation Test, which is not in the paper (see the table).",
         REPRODUCED if min(of_noise) >= 0.5 else PARTLY if max(of_noise) >= 0.5 else NOT_REPRODUCED))
     section.tables.append(Table(
         "tex_coord_test", "With and without the Tex Coord Test",
@@ -50,4 +50,4 @@ def measure(study):
 
 
 EXPERIMENT = Experiment("tex_coord_test", "The Tex Coord Test on noise and on the head", "Section 2.5",
-                        "No edge is split below the map's resolution, where only the steps between texels are left.", measure)
+                        "No edge is split below the map's resolution, where only steps between texels remain.", measure)

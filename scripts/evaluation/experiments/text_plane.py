@@ -1,4 +1,4 @@
-"""Figure 1: a text on a plane."""
+"""Figure 1: text on a plane."""
 import numpy as np
 
 from section import Claim, Experiment, Picture, Section, Table, reproduced_if
@@ -42,13 +42,13 @@ def measure(study):
     rms = run.error["interpolated.reference_to_mesh_rms_texels"]
     return Section(
         claims=[Claim(
-            "Displaced triangles are geometry: they stand above the plane and change its silhouette, which bump mapping cannot.",
+            "Displaced triangles are geometry: they rise above the plane and change its silhouette, which bump mapping cannot do.",
             "section 1, figure 1",
-            f"{run.figures['host.base_triangles']} flat triangles became {run.triangles:,}; the camera sees {100 * outside:.1f} % "
-            f"of the vertices outside the flat plane's outline; the surface lies {rms:.2f} texels RMS from the exact one.",
+            f"{run.figures['host.base_triangles']} flat triangles became {run.triangles:,}; {100 * outside:.1f} % "
+            f"of the vertices appear outside the flat plane's outline; the RMS distance from the exact surface is {rms:.2f} texels.",
             reproduced_if(outside > 0.005 and rms < 1))],
         pictures=[Picture(run.render("shaded", size=size), "The displaced surface"),
-                  Picture(run.render("wireframe", size=size), "Its triangles: flat letters' tops and the plane stay coarse")],
+                  Picture(run.render("wireframe", size=size), "Its triangles: the letters' flat tops and the plane stay coarse")],
         tables=[Table("text_plane", "The run", [("base triangles", ""), ("triangles", ""), ("edges tested", ""),
                                                 ("RMS error", "texel"), ("maximum error", "texel")],
                       [[run.figures["host.base_triangles"], run.triangles, run.figures["run.edges_tested"], rms,

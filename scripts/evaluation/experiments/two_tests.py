@@ -20,8 +20,8 @@ def only(tests):
 
 
 def verdict(runs, alone):
-    """Whether the RMS is worse than with both tests at every budget, at some or at none, by more than the search's
-    tolerance."""
+    """Whether the RMS is worse than with both tests at every budget, at some budgets or at none, by more than the
+    search's tolerance."""
     worse = sum(runs[alone, budget].error[RMS] > 1.05 * runs["both", budget].error[RMS] for budget in BUDGETS)
     return REPRODUCED if worse == len(BUDGETS) else PARTLY if worse else NOT_REPRODUCED
 
@@ -55,7 +55,7 @@ def measure(study):
         run = runs[title, SHOWN]
         section.pictures += [
             Picture(run.render("wireframe"), f"{title}: {run.triangles:,} triangles"),
-            Picture(run.render("error", error_scale=scale), f"{title}: distance from the exact surface, one scale for all three")]
+            Picture(run.render("error", error_scale=scale), f"{title}: distance from the exact surface, same scale for all three")]
     both = runs["both", SHOWN]
     meshes = {f"{budget:,} triangles": runs["both", budget].mesh for budget in BUDGETS}
     meshes["the default thresholds"] = switched["both"].mesh
@@ -75,11 +75,11 @@ def measure(study):
         Claim("The Summed Height Test alone misses local changes of the surface's orientation.",
               "section 4, figure 10 (b)", against("Summed Height Test alone"), verdict(runs, "Summed Height Test alone")),
         Claim("Detail appears where the map has it.", "section 4, figure 10 (c)",
-              "triangles per area of the map, on the donut against beside it: "
+              "triangles per area of the map, on the donut relative to beside it: "
               + "; ".join(f"{quotient:.1f} with {name}" for name, quotient in quotients.items()),
               REPRODUCED if min(quotients.values()) > 2 else PARTLY if max(quotients.values()) > 2 else NOT_REPRODUCED)]
-    section.notes.append("A threshold that never fires is a test switched off: tuned, both tests can only be as good as the "
-                         "better one, or better. Where they are alike, one test did all of the work. A difference of RMS below 5 % counts as none.")
+    section.notes.append("A test with a threshold that is never exceeded is switched off: after tuning, both tests together are at least as "
+                         "good as the better one alone. If the errors are equal, one test made all splits. RMS differences below 5 % are ignored.")
     section.tables = [
         Table("two_tests", "Thresholds tuned for a number of triangles, least RMS vertical error",
               [*COLUMNS, ("Normal Test threshold", ""), ("Summed Height Test threshold", ""), ("generation limit", "")],
@@ -91,4 +91,4 @@ def measure(study):
 
 
 EXPERIMENT = Experiment("two_tests", "Normal Test, Summed Height Test, both", "Figures 5 and 10",
-                        "Half a donut on 18 triangles: what each test finds alone, and both together.", measure)
+                        "Half a donut on 18 triangles: the meshes of each test alone, and of both together.", measure)

@@ -41,13 +41,13 @@ def measure(study):
         density_rows.append([distance, *(density_in(run.mesh, region(boxes)) for boxes in REGIONS.values())])
         section.pictures += [
             Picture(run.render("shaded", f"seen_{distance}", whole_viewport=True),
-                    f"From {distance} times the distance, as the camera sees it: {run.triangles:,} triangles. {LICENCE}"),
+                    f"From {distance} times the distance, as seen by the camera: {run.triangles:,} triangles. {LICENCE}"),
             Picture(run.render("wireframe", f"close_{distance}", eye=list(EYE), target=list(TARGET),
                                zoom=(0.42, 0.54, 2.0)),
-                    "The same mesh close up: eyes, nose and mouth of what was tessellated for "
+                    "The same mesh close up: eyes, nose and mouth, tessellated for "
                     f"{distance} times the distance. {LICENCE}")]
     section.pictures.append(Picture(runs[DISTANCES[0]].render("generation"),
-                                    f"From the first distance, colour by generation: how often an edge was split. {LICENCE}"))
+                                    f"From the first distance, coloured by generation, the number of splits. {LICENCE}"))
     densities = [dict(zip(REGIONS, row[1:])) for row in density_rows]
     features = ("eyes", "nose", "mouth")
     section.claims = [
@@ -55,7 +55,7 @@ def measure(study):
               "; ".join(f"{n:,} triangles at {d} times the distance" for d, n in zip(DISTANCES, triangles)),
               reproduced_if(triangles[0] > triangles[1] > triangles[2])),
         Claim("There is more detail around the nose, eyes and mouth.", "section 4, figure 9 (d) to (f)",
-              "triangles per area of the map, against the cheeks: " + "; ".join(
+              "triangles per area of the map, relative to the cheeks: " + "; ".join(
                   f"at {distance} times the distance " + ", ".join(f"{name} {found[name] / found['cheeks']:.1f}" for name in features)
                   for distance, found in zip(DISTANCES, densities)),
               reproduced_if(all(found[name] > 1.5 * found["cheeks"] for found in densities for name in features))),
@@ -66,10 +66,10 @@ def measure(study):
                                                     ("maximum error", "texel")], rows),
         Table("head_density", "Triangles per area of the map (the whole map = 1)",
               [("distance", "times"), *((name, "") for name in REGIONS)], density_rows)]
-    section.notes.append("The paper's head is not public; this is another, on the same base mesh of 1,800 triangles.")
+    section.notes.append("The paper's head is not public; this is a different head, on the same base mesh of 1,800 triangles.")
     return section
 
 
 EXPERIMENT = Experiment("view_distances", "A head from three distances", "Figure 9",
-                        "The farther away the viewer, the fewer triangles; those there are gather where the face has detail.",
+                        "The farther the viewer, the fewer triangles; they are concentrated where the face has detail.",
                         measure)

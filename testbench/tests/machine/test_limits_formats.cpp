@@ -110,7 +110,7 @@ TEST_CASE("formats: what an intermediate of the datapath cannot hold is refused 
     job.formats.normal_bits = 40;  // beyond the key's range, which validate() would refuse
     job.formats.normal_fraction = 26;
     CHECK_THROWS_WITH(make_setup(job, mesh, map),
-                      Catch::Contains("that, times a weight in interpolate") && Catch::Contains("formats"));
+                      Catch::Contains("difference times a weight in interpolate") && Catch::Contains("formats"));
     job.formats = {};
     job.tests.generation_limit = 16;  // likewise
     CHECK_THROWS_WITH(make_setup(job, mesh, map), Catch::Contains("tests.generation_limit has 4 bits") &&

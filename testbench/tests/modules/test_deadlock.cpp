@@ -48,11 +48,11 @@ TEST_CASE("a full queue that stalls is a deadlock, reported unit by unit") {
     CHECK(simulation.pipeline.clock.idle());
     CHECK_THAT(report, Contains("18 base triangles"));
     CHECK_THAT(line_of(report, "triangle_queue"), Contains("triangles") &&
-                                                      Contains("no place for the next (capacity 8)") &&
+                                                      Contains("no room for the next (capacity 8)") &&
                                                       Contains("waits for get_triangle"));
     CHECK_THAT(line_of(report, "tessellation"), Contains("waits for triangle_queue"));
     CHECK_THAT(line_of(report, "pass_or_tessellate"), Contains("waits for tessellation"));
-    CHECK_THAT(line_of(report, "get_triangle"), Contains("not all of it sent"));
+    CHECK_THAT(line_of(report, "get_triangle"), Contains("partly sent"));
     CHECK(simulation.pipeline.triangle_queue.on_chip_high_water_mark() == 8);
     require_cycles_add_up(simulation);
     CHECK(simulation.pipeline.passes_under_way() > 0);

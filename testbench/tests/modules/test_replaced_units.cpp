@@ -339,7 +339,7 @@ void expect_error_through_packed_streams(Mode mode) {
     NamedMachine machine("wide", setup, &units);
     const std::string error = error_of([] { sc_core::sc_start(); });
     CHECK_THAT(error, Catch::Contains("wide.pipeline.lighting.to_rasteriser") &&
-                          Catch::Contains("a value that its field cannot hold"));
+                          Catch::Contains("a value that does not fit its field"));
     CHECK(machine.rasteriser.triangles() == 0);
 }
 

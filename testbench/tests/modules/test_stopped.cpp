@@ -110,8 +110,8 @@ const CaseTable stopped(
         Row{"the paper's design, random stalls",
             "timing.stalls_seed=3 timing.stalls_per_mille=300 timing.stalls_longest=9 "
             "hardware.queue_capacity=2",
-            {{"get_triangle", "not all of it sent"},
-             {"get_triangle", "may not take: the queue is at its watermark"},
+            {{"get_triangle", "partly sent"},
+             {"get_triangle", "not accepted because the queue is at its watermark"},
              {"pass_or_tessellate", "waiting for both branches"},
              {"pass_or_tessellate", "waiting for Tessellation Tests"},
              {"transform", "waiting at the input"},
@@ -126,15 +126,15 @@ const CaseTable stopped(
              "timing.triangle_queue_interval=100",
          {{"pass_or_tessellate", "the first (#) complete"},
           {"triangle_queue", "of them off chip"},
-          {"triangle_queue", "no place for the next (capacity #)"},
-          {"tessellation", "children of a triangle, a triangle that waits"}}},
+          {"triangle_queue", "no room for the next (capacity #)"},
+          {"tessellation", "children of a triangle, a waiting triangle"}}},
         {"three tests units, a slow Transform, host triangles at any time",
          "hardware.tests_units=3 hardware.queue_watermark=1000 timing.summed_height_table_ports=12 "
          "timing.transform_latency=300 timing.transform_interval=90",
          {{"pass_or_tessellate", "waiting for Transform"}, {"get_triangle", "a host triangle"}}},
         {"an unbounded queue that takes a triangle every forty cycles",
          "timing.triangle_queue_latency=50 timing.triangle_queue_interval=40",
-         {{"triangle_queue", "of them on the way out"}, {"triangle_queue", "no place for the next"}}},
+         {{"triangle_queue", "of them leaving"}, {"triangle_queue", "no room for the next"}}},
     },
     [](const Row& row) {
         const Texts texts = texts_of_every_cycle(setup_of(with_settings(full_split_job(2, 2), row.settings)));

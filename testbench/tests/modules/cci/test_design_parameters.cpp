@@ -165,17 +165,17 @@ TEST_CASE("an invalid preset is refused with its name, and the valid values") {
             INFO(name << " = " << json);
             CHECK_THAT(error_of(name, json),
                        Catch::StartsWith("call_") &&
-                           Catch::EndsWith("." + name + " = " + json + " cannot be: it is " + wanted_text(key)));
+                           Catch::EndsWith("." + name + " = " + json + " is invalid: must be " + wanted_text(key)));
         }
     }
-    CHECK_THAT(error_of("hardware.tests_units", "2"), Contains(".hardware.tests_units = 2 cannot be: it is 1 or 3"));
+    CHECK_THAT(error_of("hardware.tests_units", "2"), Contains(".hardware.tests_units = 2 is invalid: must be 1 or 3"));
 }
 
 TEST_CASE("a mistyped preset is refused with the nearest name, and one with another prefix is ignored") {
     const auto refused = [](const std::string& mistyped, const std::string& nearest) {
         INFO(mistyped);
         const std::string error = error_of(mistyped, "9");
-        CHECK_THAT(error, Contains("." + mistyped + " = 9 is preset, but there is no such parameter") &&
+        CHECK_THAT(error, Contains("." + mistyped + " = 9 is preset, but no such parameter exists") &&
                               Catch::EndsWith("." + nearest + "?"));
     };
     refused("timing.normal_test_latancy", "timing.normal_test_latency");

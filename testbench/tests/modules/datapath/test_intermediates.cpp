@@ -431,7 +431,7 @@ TEST_CASE("intermediates: every legal format fits the model's integers, and the 
     }
     Formats formats;
     formats.normal = Format::make_signed(40, 26);
-    CHECK(misfit(formats) == "interpolate: that, times a weight");
+    CHECK(misfit(formats) == "interpolate: difference times a weight");
     formats = Formats{};
     formats.position = Format::make_signed(38, 16);
     CHECK(misfit(formats) == "transform: row . (P', 1)");

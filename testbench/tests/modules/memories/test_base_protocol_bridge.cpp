@@ -312,7 +312,7 @@ TEST_CASE("bridge: a memory's protocol violations are errors that name the bridg
             return error_of([&] { bench.memory.send_back(payload, phase); });
         };
         Payload& first = *bench.memory.come[0];
-        CHECK_THAT(breach(first, tlm::END_REQ), Contains("bridge.to_memory") && Contains("not on offer"));
+        CHECK_THAT(breach(first, tlm::END_REQ), Contains("bridge.to_memory") && Contains("not pending"));
         CHECK_THAT(breach(stranger, tlm::BEGIN_RESP), Contains("bridge.to_memory") && Contains("not made"));
         CHECK(breach(first, of_its_own).empty());
         bench.answer(0);

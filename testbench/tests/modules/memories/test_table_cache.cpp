@@ -190,7 +190,7 @@ TEST_CASE("cache: its requests and pending lines are described") {
     Bench bench(behind({64, 64, 1, 2}));
     bench.reader.reads = {{0}, {1}, {2}};
     sc_core::sc_start(sc_time(20 * 10, SC_PS));
-    CHECK(bench.cache.describe_contents() == "3 requests, 1 line to come");
+    CHECK(bench.cache.describe_contents() == "3 requests, 1 line being fetched");
     sc_core::sc_start();
     CHECK(bench.cache.describe_contents().empty());
 }

@@ -282,19 +282,19 @@ TEST_CASE("memory port: a memory's protocol violations are errors that name the 
         return error_of([&] { target.send_back(request, phase); });
     };
     CHECK_THAT(breach(stranger, tlm::BEGIN_RESP), Contains("bench.port") && Contains("was not made"));
-    CHECK_THAT(breach(stranger, tlm::END_REQ), Contains("bench.port") && Contains("not on offer"));
+    CHECK_THAT(breach(stranger, tlm::END_REQ), Contains("bench.port") && Contains("not pending"));
     bench.port.request(bench.addresses, 1);
     bench.port.request(bench.addresses + 1, 1);
-    CHECK_THAT(breach(*target.come[0], tlm::END_REQ), Contains("not on offer"));  // it was ended by return
+    CHECK_THAT(breach(*target.come[0], tlm::END_REQ), Contains("not pending"));  // it was ended by return
     CHECK_THAT(breach(*target.come[1], tlm::BEGIN_RESP), Contains("bench.port") && Contains("out of order"));
     for (const tlm::tlm_phase& phase : {tlm::tlm_phase(tlm::BEGIN_REQ), tlm::tlm_phase(tlm::END_RESP)})
-        CHECK_THAT(breach(*target.come[0], phase), Contains("bench.port") && Contains("no memory may send"));
+        CHECK_THAT(breach(*target.come[0], phase), Contains("bench.port") && Contains("a memory must not send"));
     bench.answer(0);
     bench.answer(1);
     target.status = tlm::TLM_ACCEPTED;
     bench.port.request(bench.addresses + 2, 1);
     CHECK_THAT(breach(*target.come[2], tlm::BEGIN_RESP), Contains("before END_REQ"));
-    CHECK_THAT(breach(stranger, tlm::END_REQ), Contains("not on offer"));
+    CHECK_THAT(breach(stranger, tlm::END_REQ), Contains("not pending"));
     CHECK_THAT(error_of([&] { bench.port.request(bench.addresses, 1); }),
                Contains("bench.port") && Contains("BEGIN_REQ before END_REQ"));
 }

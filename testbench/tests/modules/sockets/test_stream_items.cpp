@@ -234,7 +234,7 @@ TEST_CASE("an output sends its items packed if the design requires it, in both m
         CHECK(come.pass.new_vertices == 7);
     item.pass.triangle.vertices[2].generation = 16;  // of four bits
     CHECK_THAT(testing::error_of([&] { bench.through_wires.send(item); }),
-               Catch::Contains("through_wires") && Catch::Contains("a value that its field cannot hold"));
+               Catch::Contains("through_wires") && Catch::Contains("a value that does not fit its field"));
 }
 
 // One triangle in Get Triangle; in Calculate New P, Displace Vertex and Transform one place at the input and 1, 7

@@ -239,14 +239,14 @@ TEST_CASE("operands and results of different edges are an error") {
     Bench bench;
     bench.add_edge(datapath::gating_tests);
     bench.height_operands.items[0].tag.triangle = 17;
-    CHECK_THROWS_WITH(sc_core::sc_start(), Catch::Contains("the tests decided different edges"));
+    CHECK_THROWS_WITH(sc_core::sc_start(), Catch::Contains("the tests' results belong to different edges"));
 }
 
 TEST_CASE("an answer for another edge than the requested one is an error") {
     Bench bench;
     bench.normal_test.answers_for = 17;
     bench.add_edge(datapath::gating_tests);
-    CHECK_THROWS_WITH(sc_core::sc_start(), Catch::Contains("a test decided an edge that it was not asked for"));
+    CHECK_THROWS_WITH(sc_core::sc_start(), Catch::Contains("a result for an edge that was not sent to the test"));
 }
 
 TEST_CASE("an answer without a request is an error") {
@@ -255,5 +255,5 @@ TEST_CASE("an answer without a request is an error") {
     NormalResult result;
     sc_core::sc_start(sc_core::SC_ZERO_TIME);
     bench.normal_test.output.send(result);
-    CHECK_THROWS_WITH(sc_core::sc_start(), Catch::Contains("a test decided an edge that it was not asked for"));
+    CHECK_THROWS_WITH(sc_core::sc_start(), Catch::Contains("a result for an edge that was not sent to the test"));
 }

@@ -126,7 +126,7 @@ TEST_CASE("triangle queue: a triangle that does not fit its record is an error, 
     // In a debug build, which packs every item, its stream detects it first.
     CHECK_THAT(error_of([] { sc_core::sc_start(); }),
                Catch::Contains("a spilled triangle does not fit") ||
-                   Catch::Contains("to_get_triangle: a value that its field cannot hold"));
+                   Catch::Contains("to_get_triangle: a value that does not fit its field"));
 }
 
 // The queue's output is not taken for far longer than the test runs.

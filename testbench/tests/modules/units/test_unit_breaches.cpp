@@ -81,16 +81,16 @@ TEST_CASE("pass or tessellate: a part of an absent triangle, or one that comes t
     const TakenTriangle other = taken(1, false);
     bench.bring(triangle);
     bench.bring_geometry(triangle);
-    CHECK_THAT(error_of([&] { bench.bring_tests(other); }), Contains("did not come itself"));
-    CHECK_THAT(error_of([&] { bench.bring_geometry(other); }), Contains("did not come itself"));
-    CHECK_THAT(error_of([&] { bench.bring_geometry(triangle); }), Contains("came twice"));
+    CHECK_THAT(error_of([&] { bench.bring_tests(other); }), Contains("has not arrived"));
+    CHECK_THAT(error_of([&] { bench.bring_geometry(other); }), Contains("has not arrived"));
+    CHECK_THAT(error_of([&] { bench.bring_geometry(triangle); }), Contains("arrived twice"));
     bench.bring(other);  // its other parts are still to arrive
     const auto edge_from_transform = [&] { bench.bring_parts(bench.transform, other, 0100); };
     const auto edge_from_tests = [&] { bench.bring_parts(bench.tests, other, 0100); };
     edge_from_transform();
     edge_from_tests();
-    CHECK_THAT(error_of(edge_from_transform), Contains("came twice"));
-    CHECK_THAT(error_of(edge_from_tests), Contains("came twice"));
+    CHECK_THAT(error_of(edge_from_transform), Contains("arrived twice"));
+    CHECK_THAT(error_of(edge_from_tests), Contains("arrived twice"));
     CHECK(bench.unit.counts().passes == 0);
 }
 
