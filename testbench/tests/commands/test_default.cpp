@@ -112,7 +112,7 @@ TEST_CASE("a job that reads files runs again from its run folder") {
     const auto first = RunFolder(here.path() / "out").files();
     fs::copy(here.path() / "out", here.path() / "again");
 
-    SECTION("from anywhere") {
+    SECTION("from another working folder") {
         fs::create_directory(here.path() / "elsewhere");
         succeed({"run", "../out/job.toml", "--set", "output.folder=../out"}, here.path() / "elsewhere");
         auto second = RunFolder(here.path() / "out").files();

@@ -50,7 +50,7 @@ TEST_CASE("highlight run: the results are consistent, and every file names the t
     }
 }
 
-TEST_CASE("highlight run: functional and timed mode, with a queue that spills, leave the same mesh") {
+TEST_CASE("highlight run: functional and timed mode, with a queue that spills, give the same mesh") {
     const TestFolder here;
     const auto mesh_of = [&](const std::vector<std::string>& more) {
         succeed(run_with({"tests.highlight=true", "map.width=64", "map.height=64", "output.picture=false",

@@ -235,7 +235,7 @@ TEST_CASE("a map constant over the edge's three rectangles has no summed height"
     }
 }
 
-TEST_CASE("edge: deciding (i,j) is deciding (j,i), to the last bit") {
+TEST_CASE("edge: (i,j) and (j,i) are decided alike, bit for bit") {
     Random random;
     for (const auto& [width, height] : sizes) {
         for (const AddressMode mode : both_modes) {

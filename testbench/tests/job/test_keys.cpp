@@ -281,7 +281,7 @@ TEST_CASE("every choice reads and keeps its name") {
     CHECK(name_of(parse_job("map.source = \"ramp\"", "job.toml").map.source) == "ramp");
 }
 
-TEST_CASE("integers are accepted where numbers are wanted") {
+TEST_CASE("integers are accepted by keys that take numbers") {
     const Job job = parse_job("[displacement]\nscale = 2\n[camera]\neye = [1, -2, 3.5]\n", "job.toml");
     CHECK(job.displacement.scale == 2.0);
     CHECK(job.camera.eye == std::array<double, 3>{1, -2, 3.5});

@@ -62,7 +62,7 @@ void for_each_displaced(const TrianglePass& pass, Look&& look) {
 
 }  // namespace
 
-TEST_CASE("saturations: the default job has none of any quantity") {
+TEST_CASE("saturations: the default job has none in any quantity") {
     const MachineSetup setup = setup_of(timed_job());
     Simulation simulation(setup, 1'000'000, 100'000);
     REQUIRE(simulation.run().empty());

@@ -375,28 +375,27 @@ struct TexCoordRow {
     int expected;
 };
 
-const testing::CaseTable tex_coord_fractions(
-    "Tex Coord Test operands agree with golden: ",
-    {TexCoordRow{"nearest, whole texels", MapFilter::nearest, -1, 12, 0},
-     {"nearest, the job's half texels", MapFilter::nearest, 1, 12, 1},
-     {"bilinear, half texels", MapFilter::bilinear, -1, 12, 1},
-     {"bilinear, half texels, one fraction bit", MapFilter::bilinear, -1, 1, 1},
-     {"bilinear, whole texels, no fraction bits", MapFilter::bilinear, -1, 0, 0},
-     {"bilinear, the job's whole texels", MapFilter::bilinear, 0, 12, 0},
-     {"bilinear, the job's quarter texels", MapFilter::bilinear, 2, 12, 2}},
-    [](const TexCoordRow& row) {
-        Job job;
-        job.map.width = job.map.height = 20;
-        job.hardware.displacement_filter = row.filter;
-        job.formats.tex_coord_fraction = row.asked;
-        job.formats.texture_fraction = row.texture_fraction;
-        SetupRun run{job};
-        CHECK(run.check().passed());
-        int& fraction = run.setup.registers.formats.tex_coord_fraction;
-        CHECK(fraction == row.expected);
-        fraction = row.expected == 0 ? 1 : 0;
-        run.require_noticed(run.setup, "tex_coord_fraction");
-    });
+const testing::CaseTable tex_coord_fractions("operands of the Tex Coord Test, checked by golden: ",
+                                             {TexCoordRow{"nearest, whole texels", MapFilter::nearest, -1, 12, 0},
+                                              {"nearest, the job's half texels", MapFilter::nearest, 1, 12, 1},
+                                              {"bilinear, half texels", MapFilter::bilinear, -1, 12, 1},
+                                              {"bilinear, half texels, one bit", MapFilter::bilinear, -1, 1, 1},
+                                              {"bilinear, whole texels, no bits", MapFilter::bilinear, -1, 0, 0},
+                                              {"bilinear, the job's whole texels", MapFilter::bilinear, 0, 12, 0},
+                                              {"bilinear, the job's quarter texels", MapFilter::bilinear, 2, 12, 2}},
+                                             [](const TexCoordRow& row) {
+                                                 Job job;
+                                                 job.map.width = job.map.height = 20;
+                                                 job.hardware.displacement_filter = row.filter;
+                                                 job.formats.tex_coord_fraction = row.asked;
+                                                 job.formats.texture_fraction = row.texture_fraction;
+                                                 SetupRun run{job};
+                                                 CHECK(run.check().passed());
+                                                 int& fraction = run.setup.registers.formats.tex_coord_fraction;
+                                                 CHECK(fraction == row.expected);
+                                                 fraction = row.expected == 0 ? 1 : 0;
+                                                 run.require_noticed(run.setup, "tex_coord_fraction");
+                                             });
 
 }  // namespace
 

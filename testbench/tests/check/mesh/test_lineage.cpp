@@ -172,7 +172,7 @@ TEST_CASE("lineage: any finished triangle left out, doubled or turned over is fo
     CHECK(tried > 100);
 }
 
-TEST_CASE("lineage: an edge split by one triangle alone is a T-vertex, but on the base mesh's border") {
+TEST_CASE("lineage: an edge split by one triangle alone is a T-vertex, except on the base mesh's border") {
     const MachineSetup setup = setup_of(small_job());
     std::size_t inside = 0, on_border = 0;
     for (std::size_t n = 0; n < 600; n += 5)
