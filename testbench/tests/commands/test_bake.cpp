@@ -15,7 +15,7 @@ fs::path example(const char* name) {
 
 }  // namespace
 
-TEST_CASE("bake: the examples in all formats, the same twice, and jobs that run") {
+TEST_CASE("bake: the examples bake in all formats, identically twice, and their jobs run") {
     const TestFolder here;
     for (const char* const name : {"dome", "saddle", "hills", "pillow"}) {
         INFO(name);
@@ -75,7 +75,7 @@ TEST_CASE("bake: the job fits the domain and finds its files from its own folder
     CHECK_THAT(read_all(here.path() / "meshed.job.toml"), Contains("base/square.obj"));
 }
 
-TEST_CASE("bake: overlapping base triangles are told of") {
+TEST_CASE("bake: overlapping base triangles are reported") {
     const TestFolder here;
     write_all(here.path() / "ball.toml", "[quadric]\nshape = \"sphere\"\nradius = 6\n");
     CHECK_THAT(succeed({"bake", "ball.toml", "--mesh",
@@ -114,7 +114,7 @@ TEST_CASE("bake: hostile arguments are refused in one line") {
     refused({"bake", dome, "--output", "b.pgm"}, here, {"b.pgm", "folder"});
 }
 
-TEST_CASE("bake: a disk that is full ends it with exit code 4 and no map") {
+TEST_CASE("bake: a full disk ends it with exit code 4 and no map") {
     const TestFolder here;
     ProgramLimits limits;
     limits.file_bytes = 4096;

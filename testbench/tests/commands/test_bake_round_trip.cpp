@@ -111,7 +111,7 @@ TEST_CASE("round trip: on the default plane a vertex lies on the dome at the tex
     CHECK(highest > 0.74);
 }
 
-TEST_CASE("round trip: a cylinder baked to a sphere closes at its seam, and only where the map repeats") {
+TEST_CASE("round trip: a cylinder baked to a sphere closes at its seam, and only if the map repeats") {
     const TestFolder here;
     const fs::path examples = source_folder() / "testbench/examples/surfaces";
     // Off the axis, so that the two sides of the seam do not mirror each other.

@@ -41,7 +41,7 @@ double value(const json& error, const char* group, const char* name) {
 
 }  // namespace
 
-TEST_CASE("compare tells the default run's error") {
+TEST_CASE("compare reports the default run's error") {
     const TestFolder here;
     run_job(here.path(), {});
     const json error = compare(here.path(), "runs/half_donut");
@@ -82,7 +82,7 @@ TEST_CASE("compare tells the default run's error") {
           value(error, "interpolated", "reference_to_mesh_rms"));
 }
 
-TEST_CASE("where all edges split, a bilinear filter leaves a third of the error, in either design") {
+TEST_CASE("if all edges split, a bilinear filter leaves a third of the error, in either design") {
     const TestFolder here;
     const auto rms = [&](const std::string& filter, const std::string& design) {
         run_job(here.path(), {"--set", "map.width=96", "--set", "map.height=96", "--set", "tests.normal_threshold=0",
@@ -95,7 +95,7 @@ TEST_CASE("where all edges split, a bilinear filter leaves a third of the error,
     CHECK(rms("bilinear", "modern") == bilinear);
 }
 
-TEST_CASE("an undisplaced run of a constant map has the error its bias makes") {
+TEST_CASE("a run of a constant map on a plane has no error beyond rounding") {
     const TestFolder here;
     run_job(here.path(), {"--set", "map.source=constant", "--set", "displacement.bias=0.25"});
     const json error = compare(here.path(), "runs/half_donut");
@@ -119,7 +119,7 @@ TEST_CASE("a run whose triangles were all culled has no mesh to compare") {
     CHECK_THAT(read_all(here.path() / "runs/half_donut/error.txt"), Contains("no mesh") && Contains("culling"));
 }
 
-TEST_CASE("compare refuses what is no run, and leaves nothing then") {
+TEST_CASE("compare refuses a folder that is not a run, and writes nothing") {
     const TestFolder here;
     refused({"compare"}, here.path(), {"RUN", "--help"});
     refused({"compare", "a", "b"}, here.path(), {"--help"});
@@ -141,7 +141,7 @@ TEST_CASE("compare refuses what is no run, and leaves nothing then") {
     CHECK_FALSE(fs::exists(here.path() / "runs/half_donut/error.txt"));
 }
 
-TEST_CASE("compare tells Crater Lake's error in metres") {
+TEST_CASE("compare reports Crater Lake's error in metres") {
     const TestFolder here;
     const auto run = [&](const std::string& name, const std::vector<std::string>& more) {
         run_job(here.path(),

@@ -10,7 +10,7 @@ using namespace tessera;
 using Catch::Contains;
 namespace fs = std::filesystem;
 
-TEST_CASE("the default job leaves a complete run folder whose figures agree") {
+TEST_CASE("the default job writes a complete run folder with consistent figures") {
     const TestFolder here;
     const ProgramEnd end = succeed({"run"}, here.path());
     CHECK(here.names() == std::vector<std::string>{"runs"});
@@ -41,7 +41,7 @@ TEST_CASE("the default job leaves a complete run folder whose figures agree") {
     CHECK(lines == 9);
 }
 
-TEST_CASE("the summary says which test decided, in the statistics' figures") {
+TEST_CASE("the summary reports which test decided, with the statistics' figures") {
     const TestFolder here;
     // The 6 edges of one quad, all split, and 24 edges of their children, stopped by generation 1.
     const ProgramEnd end = succeed(
@@ -60,7 +60,7 @@ TEST_CASE("the summary says which test decided, in the statistics' figures") {
     CHECK(run.count("pass_or_tessellate", "stopped_by_several") == 0);
 }
 
-TEST_CASE("a map that the mesh's quads do not divide: the run warns, and its remedy helps") {
+TEST_CASE("a map not divisible by the mesh's quads gives a warning, and its remedy helps") {
     const TestFolder here;
     const auto run = [&](const char* side) {
         return succeed(Arguments{"run"} +
@@ -74,7 +74,7 @@ TEST_CASE("a map that the mesh's quads do not divide: the run warns, and its rem
     CHECK_THAT(run("72"), !Contains("warning: "));
 }
 
-TEST_CASE("two runs leave identical bytes, and so do the jobs they write down") {
+TEST_CASE("two runs write identical bytes, and so do the jobs they write") {
     const TestFolder here;
     // The folder's name is part of the job: the runs keep it and start in different working folders.
     const auto run_in = [&](const std::string& name, const Arguments& arguments) {
@@ -112,7 +112,7 @@ TEST_CASE("a job that reads files runs again from its run folder") {
     const auto first = RunFolder(here.path() / "out").files();
     fs::copy(here.path() / "out", here.path() / "again");
 
-    SECTION("from anywhere") {
+    SECTION("from another working folder") {
         fs::create_directory(here.path() / "elsewhere");
         succeed({"run", "../out/job.toml", "--set", "output.folder=../out"}, here.path() / "elsewhere");
         auto second = RunFolder(here.path() / "out").files();
@@ -121,7 +121,7 @@ TEST_CASE("a job that reads files runs again from its run folder") {
         second["job.toml"] = first.at("job.toml");
         require_same_files(first, second);
     }
-    SECTION("with paths set on the command line, from there") {
+    SECTION("from the first working folder, with paths set on the command line") {
         succeed(Arguments{"run"} + set({"mesh.source=file", "mesh.file=inputs/square.obj", "map.source=file",
                                         "map.file=inputs/bump.pgm", "tests.generation_limit=4", "tests.tex_coord=false",
                                         "output.folder=out"}),
@@ -130,7 +130,7 @@ TEST_CASE("a job that reads files runs again from its run folder") {
     }
 }
 
-TEST_CASE("a run replaces what an earlier one left in its folder") {
+TEST_CASE("a run replaces the files of an earlier run in its folder") {
     const TestFolder here;
     const Arguments small = Arguments{"run"} + set({"output.folder=out", "tests.generation_limit=2"});
     succeed(small + set({"output.obj=true"}), here.path());

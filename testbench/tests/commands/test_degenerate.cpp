@@ -54,7 +54,7 @@ TEST_CASE("a surface without detail stays the base mesh") {
     CHECK(finished(Attempt({"displacement.scale=0", "tests.summed_height=false"}).well()) == 18);
 }
 
-TEST_CASE("heights of nothing, downwards and enormous run") {
+TEST_CASE("zero, negative and enormous heights run") {
     Attempt({"displacement.scale=0"}).well();
     CHECK(finished(Attempt({"displacement.scale=-0.25"}).well()) > 1000);
     Attempt({"displacement.scale=-0.25", "displacement.bias=0.25"}).well();
@@ -63,7 +63,7 @@ TEST_CASE("heights of nothing, downwards and enormous run") {
     Attempt({"displacement.bias=-1e6", "tests.generation_limit=4"}).well();
 }
 
-TEST_CASE("a camera anywhere runs") {
+TEST_CASE("a camera at any position runs") {
     Attempt({"camera.viewport_width=1", "camera.viewport_height=1", "output.picture=true"}).well();
     Attempt({"camera.viewport_width=1", "camera.viewport_height=16384", "camera.eye=[1, -3, 2.5]"}).well();
     Attempt({"camera.eye=[0.01, 0.02, 0.1]", "camera.target=[1, 0, 0.1]"}).well();  // within the heights
@@ -79,7 +79,7 @@ TEST_CASE("a camera anywhere runs") {
     Attempt({"camera.field_of_view=179"}).well();
 }
 
-TEST_CASE("an eye out of the machine's reach is a clear error or a run") {
+TEST_CASE("an eye beyond the machine's range is a clear error or a run") {
     const Attempt attempt(
         {"camera.eye=[0, -1000000, 1000000]", "displacement.scale=1e-6", "mesh.width=1e-6", "mesh.depth=1e-6"});
     INFO(attempt.end.text());
@@ -90,7 +90,7 @@ TEST_CASE("an eye out of the machine's reach is a clear error or a run") {
     }
 }
 
-TEST_CASE("culling takes from what is written and lit, and from nothing else") {
+TEST_CASE("culling removes triangles from the mesh files and from Lighting, and changes nothing else") {
     const RunFolder all = Attempt({"displacement.scale=0.6"}).well();
     const RunFolder front = Attempt({"displacement.scale=0.6", "hardware.culling=back"}).well();
     CHECK(all.count("pass_or_tessellate", "culled") == 0);
@@ -106,7 +106,7 @@ TEST_CASE("culling takes from what is written and lit, and from nothing else") {
     CHECK(none.read_ply().faces == 0);
 }
 
-TEST_CASE("the queue's order and watermark, and the way to memory, change no triangle") {
+TEST_CASE("the queue's order, its watermark and the access to memory change no triangle") {
     const auto plain = Attempt({}).well().files();
     for (const char* const setting :
          {"hardware.queue_order=lifo", "hardware.queue_watermark=1000", "hardware.direct_memory=false"}) {
@@ -142,7 +142,7 @@ TEST_CASE("thresholds of zero end at the map's resolution, the generation limit 
     CHECK_THAT(endless.end.err, Contains("limits.triangles = 20000"));
 }
 
-TEST_CASE("the narrowest and widest formats run or say what does not fit") {
+TEST_CASE("the narrowest and widest formats run or report the value that does not fit") {
     const auto settles = [](std::vector<std::string> settings) {
         // so coarse a bound allows that many flips
         settings.insert(settings.end(), {"check.allowed_flips=100", "check.allowed_triangles=100"});
@@ -171,7 +171,7 @@ TEST_CASE("the narrowest and widest formats run or say what does not fit") {
     settles({"formats.generation_bits=1", "tests.generation_limit=1"});
 }
 
-TEST_CASE("checks and files that are switched off are left out") {
+TEST_CASE("checks and files that are switched off are omitted") {
     const Attempt attempt({"check.golden=false", "check.end_to_end=false", "check.invariants=false", "check.work=false",
                            "output.ply=false", "output.obj=false", "output.picture=false", "tests.generation_limit=2"});
     INFO(attempt.end.text());
@@ -200,7 +200,7 @@ TEST_CASE("read checks compare every table read, and change nothing") {
     }
 }
 
-TEST_CASE("read checks compare what a cache fetches, and what units read through it") {
+TEST_CASE("read checks compare the reads of a cache and the reads of units through it") {
     const Attempt checked({"mode=timed", "check.reads=true", "timing.displacement_map_cache_bytes=100",
                            "timing.normal_map_cache_bytes=1000", "timing.summed_height_table_cache_bytes=4096"});
     CHECK_THAT(checked.end.out, Contains("all checks passed") && Contains("fetched"));
@@ -216,7 +216,7 @@ TEST_CASE("read checks compare what a cache fetches, and what units read through
     CHECK(run.conformance["reads"]["entries"] == reads);
 }
 
-TEST_CASE("a check that fails is exit code 1, and the results are there") {
+TEST_CASE("a failed check ends with exit code 1, and the results are written") {
     const Attempt attempt({"check.allowed_flips=0", "formats.normal_bits=8", "formats.normal_fraction=6"});
     INFO(attempt.end.text());
     REQUIRE(attempt.end.exit_code == 1);

@@ -22,7 +22,7 @@ std::size_t times(const std::string& text, const std::string& words) {
 
 }  // namespace
 
-TEST_CASE("figures: the page holds what the runs left") {
+TEST_CASE("figures: the page contains the results of the runs") {
     const Checkout checkout;
     const ProgramEnd end = checkout.run(experiment);
     INFO(end.text());
@@ -53,7 +53,7 @@ TEST_CASE("figures: the page holds what the runs left") {
     CHECK(read_all(folder / "index.html") == page);
 }
 
-TEST_CASE("figures: a program that fails is named on the page, and by the exit code") {
+TEST_CASE("figures: a program that fails is reported on the page and by the exit code") {
     const Checkout checkout;
     fs::remove(checkout.root() / "build/release/testbench/commands/tessera");
     write_all(checkout.root() / "build/release/testbench/commands/tessera",
@@ -65,14 +65,14 @@ TEST_CASE("figures: a program that fails is named on the page, and by the exit c
     CHECK_THAT(read_all(checkout.root() / "runs/figures_only/index.html"), Contains("no luck"));
 }
 
-TEST_CASE("figures: an experiment nobody knows is refused, with those there are") {
+TEST_CASE("figures: an unknown experiment is refused with the list of known ones") {
     const Checkout checkout;
     const ProgramEnd end = checkout.run("scripts/figures --only two_test");
     CHECK(end.exit_code == 2);
     CHECK_THAT(end.err, Contains("two_tests") && Contains("crater_lake"));
 }
 
-TEST_CASE("figures: a folder of pictures that no evaluation left is refused") {
+TEST_CASE("figures: a folder of pictures not written by an evaluation is refused") {
     const Checkout checkout;
     const ProgramEnd end = checkout.run("mkdir -p mine/pictures && scripts/figures --only text_plane --output mine");
     CHECK(end.exit_code == 2);

@@ -31,7 +31,7 @@ std::vector<FrameRow> two_rows() {
 
 }  // namespace
 
-TEST_CASE("frames.csv: each figure in its column") {
+TEST_CASE("frames.csv: each figure is in its column") {
     CHECK(frames_csv(two_rows()) ==
           "frame,displacement_scale,triangles,edges_tested,edges_split,cycles,base_mesh_bytes,"
           "displacement_map_bytes,normal_map_bytes,summed_height_table_bytes,register_bytes,sent_bytes,"
@@ -40,7 +40,7 @@ TEST_CASE("frames.csv: each figure in its column") {
           "frame_001,0.25,1234,72,83,56789,1,0,300,0,8,309,8630\n");
 }
 
-TEST_CASE("frames.txt: each figure below its heading") {
+TEST_CASE("frames.txt: each figure is below its heading") {
     CHECK(frames_heading() + frames_line(two_rows()[0]) + frames_line(two_rows()[1]) ==
           "  frame      scale, model units    triangles   edges tested         cycles    sent, bytes "
           "tessellated mesh, bytes\n"
@@ -51,7 +51,7 @@ TEST_CASE("frames.txt: each figure below its heading") {
 }
 
 // 54321 + 309 + 308 bytes sent; the tessellated meshes have 100000 + 8630.
-TEST_CASE("frames.txt: what was sent, by kind, and beside the tessellated meshes") {
+TEST_CASE("frames.txt: the bytes sent are listed by kind and beside the tessellated meshes") {
     std::vector<FrameRow> rows = two_rows();
     rows.push_back(rows[1]);
     rows[2].name = "frame_002";
@@ -66,7 +66,7 @@ TEST_CASE("frames.txt: what was sent, by kind, and beside the tessellated meshes
           "host sends 0.51 times as much\n");
 }
 
-TEST_CASE("frames: what a frame counted is read from its own figures") {
+TEST_CASE("frames: the counts of a frame are read from its own figures") {
     const TestFolder here;
     const auto figure = [](const char* name, const std::string& value) {
         return '"' + std::string(name) + "\": {\"value\": " + value + '}';

@@ -67,7 +67,7 @@ std::vector<std::string> names_in(const fs::path& folder) {
 
 }  // namespace
 
-TEST_CASE("a frame is, byte for byte, the plain run of its scale") {
+TEST_CASE("a frame equals the plain run of its scale, byte for byte") {
     const TestFolder here;
     const std::string mode = GENERATE("functional", "timed");
     succeed(run_of(frames(3), mode), here.path());
@@ -91,7 +91,7 @@ TEST_CASE("a frame is, byte for byte, the plain run of its scale") {
     CHECK(names_in(here.path() / "out") == three_frames);
 }
 
-TEST_CASE("frames grow out of a flat one, and the table says what they cost") {
+TEST_CASE("frames grow from a flat one, and the table lists their cost") {
     const TestFolder here;
     const ProgramEnd end = succeed(run_of(frames(3), "timed"), here.path());
     for (const glm::dvec3& position : read_ply(here.path() / "out/frame_000/mesh.ply").positions)
@@ -121,7 +121,7 @@ TEST_CASE("frames grow out of a flat one, and the table says what they cost") {
     CHECK_THAT(end.out, Contains("frame_002") && Contains("sent for the first frame"));
 }
 
-TEST_CASE("frames are the same twice, and from the job they leave") {
+TEST_CASE("frames are the same when run again, and from the job they write") {
     const TestFolder here;
     succeed(run_of(frames(2)), here.path());
     const auto once = RunFolder(here.path() / "out/frame_001").files();
@@ -149,7 +149,7 @@ TEST_CASE("a frame that fails ends the run with its exit code and its name") {
         CHECK_THAT(end.err, Contains("deadlock") && Contains("frame_00"));
         CHECK_FALSE(fs::exists(here.path() / "out/frames.csv"));
     }
-    SECTION("a check: all frames are there, and the failing ones are named") {
+    SECTION("a check: all frames are written, and the failing ones are named") {
         const ProgramEnd end = run_tessera(
             run_of(frames(3, {"formats.normal_bits=7", "formats.normal_fraction=5", "check.allowed_flips=0"})),
             here.path());
@@ -171,7 +171,7 @@ TEST_CASE("a frame that fails ends the run with its exit code and its name") {
     }
 }
 
-TEST_CASE("frames of which the first fails leave the earlier run as it was") {
+TEST_CASE("a failure of the first frame leaves the earlier run unchanged") {
     const TestFolder here;
     std::vector<std::string> plain = small;
     plain.emplace_back("output.folder=out");
@@ -186,7 +186,7 @@ TEST_CASE("frames of which the first fails leave the earlier run as it was") {
     CHECK(read_all(here.path() / "out/mesh.ply") == mesh);
 }
 
-TEST_CASE("a signal to the process of all frames ends the frame's too, and a line says how far all were") {
+TEST_CASE("a signal to the parent process also ends the frame's process, and a line reports the progress") {
     const TestFolder here;
     const std::string interrupt =
         "\"$0\" run --vcd --set frames.count=20 --set output.folder=out --set map.width=1024 & parent=$!\n"
@@ -205,7 +205,7 @@ TEST_CASE("a signal to the process of all frames ends the frame's too, and a lin
     CHECK_FALSE(fs::exists(here.path() / "out/frames.csv"));
 }
 
-TEST_CASE("frames that cannot be are refused before the first, and what was there stays") {
+TEST_CASE("invalid frames are refused before the first, and existing files stay") {
     const TestFolder here;
     succeed(run_of(frames(2)), here.path());
     const std::string table = read_all(here.path() / "out/frames.csv");
@@ -228,7 +228,7 @@ TEST_CASE("frames that cannot be are refused before the first, and what was ther
     CHECK(fs::exists(here.path() / "out/frame_001/mesh.ply"));
 }
 
-TEST_CASE("what another run left in the folder does not stay beside the new one") {
+TEST_CASE("files of another run in the folder are removed") {
     const TestFolder here;
     const fs::path out = here.path() / "out";
     succeed(run_of(frames(5)), here.path());

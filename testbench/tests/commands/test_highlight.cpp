@@ -19,7 +19,7 @@ Arguments run_with(const Arguments& settings) {
 
 }  // namespace
 
-TEST_CASE("highlight run: consistent, and every file names the test") {
+TEST_CASE("highlight run: the results are consistent, and every file names the test") {
     const TestFolder here;
     const ProgramEnd end = succeed(run_with({"tests.highlight=true", "output.obj=true"}), here.path());
     CHECK_THAT(end.out, Contains("highlight alone") && Contains("all checks passed"));
@@ -50,7 +50,7 @@ TEST_CASE("highlight run: consistent, and every file names the test") {
     }
 }
 
-TEST_CASE("highlight run: functional and timed mode, with a queue that spills, leave the same mesh") {
+TEST_CASE("highlight run: functional and timed mode, with a queue that spills, give the same mesh") {
     const TestFolder here;
     const auto mesh_of = [&](const std::vector<std::string>& more) {
         succeed(run_with({"tests.highlight=true", "map.width=64", "map.height=64", "output.picture=false",
@@ -67,7 +67,7 @@ TEST_CASE("highlight run: functional and timed mode, with a queue that spills, l
 
 // A Highlight Test that never asks for a split: the mesh and every cycle are those of a design without it, except for
 // the latency.
-TEST_CASE("highlight run: to the cycle a Normal Test as much longer") {
+TEST_CASE("highlight run: it takes the cycles of an equally longer Normal Test") {
     const TestFolder here;
     const auto levels_of = [&](const std::vector<std::string>& more) {
         succeed(run_with({"map.width=64", "map.height=64", "output.picture=false",

@@ -68,17 +68,17 @@ void try_maps(const char* kind) {
 
 }  // namespace
 
-TEST_CASE("hostile EXR files end well or in one message") {
+TEST_CASE("hostile EXR files are read or refused in one message") {
     try_maps("exr_crafted");
 }
-TEST_CASE("hostile PGM files end well or in one message") {
+TEST_CASE("hostile PGM files are read or refused in one message") {
     try_maps("pgm");
 }
-TEST_CASE("hostile PNG files end well or in one message") {
+TEST_CASE("hostile PNG files are read or refused in one message") {
     try_maps("png");
 }
 
-TEST_CASE("hostile OBJ files end well or in one message") {
+TEST_CASE("hostile OBJ files are read or refused in one message") {
     const fs::path folder = shared_data("hostile/obj");
     if (folder.empty())
         return;
@@ -88,7 +88,7 @@ TEST_CASE("hostile OBJ files end well or in one message") {
             {"output.folder=out", "map.width=16", "map.height=16", "tests.generation_limit=1", "output.picture=false"});
 }
 
-TEST_CASE("good maps of every kind run") {
+TEST_CASE("valid maps of every kind run") {
     const fs::path data = shared_data();
     if (data.empty())
         return;

@@ -69,7 +69,7 @@ void run_job_well(const std::string& name) {
 
 }  // namespace
 
-TEST_CASE("every job of the project has its test here") {
+TEST_CASE("every job of the project has a test here") {
     std::vector<std::string> names;
     for (const auto& entry : fs::directory_iterator(source_folder() / "testbench/examples/jobs"))
         if (entry.path().extension() == ".toml")
@@ -159,7 +159,7 @@ TEST_CASE("every height test closes the head on the paper's cylinder and the tea
     }
 }
 
-TEST_CASE("the data folder can be elsewhere") {
+TEST_CASE("the data folder can be set") {
     const TestFolder here;
     fs::create_directories(here.path() / "data/maps");
     write_all(here.path() / "data/maps/dot.pgm", "P2 1 1 9\n5\n");

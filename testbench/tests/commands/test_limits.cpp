@@ -103,7 +103,7 @@ TEST_CASE("limits: the largest convex polygon runs") {
     CHECK_THAT(end.out, Contains("65,534 base"));
 }
 
-TEST_CASE("limits: a polygon that is too much work to cut is refused") {
+TEST_CASE("limits: a polygon too expensive to cut is refused") {
     const TestFolder here;
     constexpr std::size_t corners = 65536, half = corners / 2;
     write_polygon(here.path() / "a.obj", corners, [](std::size_t i) {
@@ -115,7 +115,7 @@ TEST_CASE("limits: a polygon that is too much work to cut is refused") {
                   {"a.obj:65537", "65536 corners", "1000000000 steps"});
 }
 
-TEST_CASE("limits: a hundred million triangles are refused before anything is made") {
+TEST_CASE("limits: a hundred million triangles are refused before any is made") {
     refused({"mesh.columns=10000", "mesh.rows=5000"}, ExitCode::bad_input, {"`mesh.columns` = 10000", "2048"});
     refused({"mesh.rows=50000000"}, ExitCode::bad_input, {"`mesh.rows` = 50000000", "2048"});
     for (const char* const source : {"plane", "cylinder", "sphere"})
@@ -131,7 +131,7 @@ TEST_CASE("limits: a hundred million triangles are refused before anything is ma
                   {"p.txt:1", "99999999999", "the limit is 4000000"});
 }
 
-TEST_CASE("limits: maps, texts and frames beyond any measure are refused") {
+TEST_CASE("limits: maps, texts and frames that are far too large are refused") {
     refused({"map.width=1000000000"}, ExitCode::bad_input, {"`map.width` = 1000000000", "4096"});
     refused({"map.height=9223372036854775807"}, ExitCode::bad_input, {"`map.height`", "4096"});
     refused({"frames.count=1000000"}, ExitCode::bad_input, {"`frames.count` = 1000000", "1000"});
@@ -142,7 +142,7 @@ TEST_CASE("limits: maps, texts and frames beyond any measure are refused") {
             {"map.text", "4096 x 264", "Shorten the text"});
 }
 
-TEST_CASE("limits: memory that runs out, wherever it does, is told as that") {
+TEST_CASE("limits: running out of memory is reported as such at any point") {
     if (sanitized)
         return;  // AddressSanitizer reserves address space by the terabyte
     const TestFolder here;
@@ -169,7 +169,7 @@ TEST_CASE("limits: memory that runs out, wherever it does, is told as that") {
     CHECK(short_of_memory > 2);
 }
 
-TEST_CASE("limits: headers of a few bytes that claim gigabytes") {
+TEST_CASE("limits: short headers that claim gigabytes are refused") {
     const TestFolder here;
     const auto check_map = [&](const std::string& bytes, const std::vector<std::string>& words) {
         write_all(here.path() / "map", bytes);
@@ -189,7 +189,7 @@ TEST_CASE("limits: headers of a few bytes that claim gigabytes") {
     }
 }
 
-TEST_CASE("limits: TOML without end, too deep, or of another encoding") {
+TEST_CASE("limits: TOML that is endless, too deep or of another encoding is refused") {
     const TestFolder here;
     const auto check_job = [&](const std::string& text, const std::string& words) {
         write_all(here.path() / "job.toml", text);
@@ -203,7 +203,7 @@ TEST_CASE("limits: TOML without end, too deep, or of another encoding") {
     check_job("[map]\ntext = \"caf\xe9\"\n", "utf-8");
 }
 
-TEST_CASE("limits: what is no file, wherever a file is asked for") {
+TEST_CASE("limits: a path that is not a regular file is refused by every command") {
     const TestFolder here;
     fs::create_directory(here.path() / "folder");
     REQUIRE(::mkfifo((here.path() / "pipe").c_str(), 0600) == 0);

@@ -38,11 +38,11 @@ void expect_run(const Arguments& settings) {
 
 }  // namespace
 
-TEST_CASE("limits: every number of the timing at its lowest runs") {
+TEST_CASE("limits: every timing key runs at its lowest value") {
     expect_run(timing_at(false, {}));
 }
 
-TEST_CASE("limits: every number of the timing at its highest ends in a message or a run") {
+TEST_CASE("limits: every timing key at its highest value ends in a message or a run") {
     for (const char* const mode : {"timed", "functional"}) {
         const TestFolder here;
         Arguments settings = timing_at(true, {});
@@ -67,7 +67,7 @@ TEST_CASE("limits: a base mesh without a triangle is refused with its file's nam
         refused(run_of({"mesh.source=file", std::string("mesh.file=") + file}), here, {file});
 }
 
-TEST_CASE("limits: a view distance whose format has fewer than no fraction bits is told as it is") {
+TEST_CASE("limits: a negative number of fraction bits of the view distance is reported as it is") {
     const TestFolder here;
     succeed(run_of({"formats.position_bits=12", "formats.position_fraction=0", "camera.eye=[0, -30, 30]"}),
             here.path());
@@ -78,7 +78,7 @@ TEST_CASE("limits: a view distance whose format has fewer than no fraction bits 
     require_consistent(run);
 }
 
-TEST_CASE("limits: directions as short as a number can be are directions") {
+TEST_CASE("limits: the shortest vectors that a number can express are valid directions") {
     const TestFolder here;
     const auto mesh_of = [&](const std::string& up, const std::string& light) {
         succeed(run_of({"camera.up=" + up, "hardware.light=" + light}), here.path());
@@ -87,7 +87,7 @@ TEST_CASE("limits: directions as short as a number can be are directions") {
     CHECK(mesh_of("[0, 0, 5e-324]", "[0, 0, 5e-324]") == mesh_of("[0, 0, 1]", "[0, 0, 1]"));
 }
 
-TEST_CASE("limits: a saturation that no width helps is noted, not warned of") {
+TEST_CASE("limits: a saturation that no width prevents is a note, not a warning") {
     const TestFolder here;
     const ProgramEnd end = succeed(
         run_of({"map.source=constant", "camera.eye=[0, -3, 0]", "camera.target=[0, 0, 0]", "hardware.light=[0, 0, 1]"}),

@@ -50,7 +50,7 @@ class Log {
 
 }  // namespace
 
-TEST_CASE("progress in a log: a line every ten seconds, none for less") {
+TEST_CASE("progress in a log: one line every ten seconds, none for shorter work") {
     const Log log(false);
     Progress progress("frame_3: ", log.display());
     progress.show("running", 0);
@@ -79,7 +79,7 @@ TEST_CASE("progress in a log: a line every ten seconds, none for less") {
     CHECK(log.text() == second + "tessera: after 50 s at 90 %, frame_3: checking\n");
 }
 
-TEST_CASE("progress in a log: nothing of work that is over, and work that begins late waits for its turn") {
+TEST_CASE("progress in a log: finished work is not shown, and work that begins late waits for its turn") {
     const Log log(false);
     log.at(35);
     {
@@ -103,7 +103,7 @@ TEST_CASE("progress in a log: nothing of work that is over, and work that begins
     CHECK(log.text() == "tessera: after 60 s at 50 %, writing\n");
 }
 
-TEST_CASE("progress on a terminal: a bar that is overwritten, ten times a second, and no lines") {
+TEST_CASE("progress on a terminal: a bar is overwritten ten times a second, and no lines are printed") {
     const Log log(true);
     Progress progress("frame_3: ", log.display());
     progress.show("running", 0.5);
@@ -123,7 +123,7 @@ TEST_CASE("progress on a terminal: a bar that is overwritten, ten times a second
     CHECK(log.text() == all + "\r\x1b[K");
 }
 
-TEST_CASE("progress that cannot be written ends nothing") {
+TEST_CASE("progress that cannot be written raises no error") {
     std::FILE* const full = std::fopen("/dev/full", "w");
     REQUIRE(full != nullptr);
     the_time = Clock::time_point{} + std::chrono::hours(1);
@@ -137,7 +137,7 @@ TEST_CASE("progress that cannot be written ends nothing") {
     std::fclose(full);
 }
 
-TEST_CASE("lines of progress are what the runner of programs leaves out") {
+TEST_CASE("the program runner leaves out lines of progress and no others") {
     const TestFolder here;
     const ProgramEnd end = run_program({"sh", "-c",
                                         "echo 'tessera: note' >&2; echo 'tessera: after 20 s at 5 %, "

@@ -36,7 +36,7 @@ TEST_CASE("rank: Crater Lake's error at 4,800 triangles, with entries of 8 bits"
     CHECK(found.rms < 5.5);
 }
 
-TEST_CASE("rank: no grid point is farther from the mesh than the bound says") {
+TEST_CASE("rank: no grid point is farther from the mesh than the bound") {
     const TestFolder here;
     for (const char* const bits : {"6", "16"}) {
         const CraterLakeRun found =
@@ -48,7 +48,7 @@ TEST_CASE("rank: no grid point is farther from the mesh than the bound says") {
     }
 }
 
-TEST_CASE("tessera rank: a row has the figures of a run with its threshold, and every promise holds") {
+TEST_CASE("tessera rank: a row has the figures of a run with its threshold, and every bound holds") {
     const TestFolder here;
     const std::string job = (source_folder() / "testbench/examples/jobs/crater_lake_rank.toml").string();
     const Arguments settings{"--set", "formats.bound_bits=8", "--set", "limits.triangles=40000"};
@@ -86,7 +86,7 @@ TEST_CASE("tessera rank: a row has the figures of a run with its threshold, and 
     CHECK(runs >= 4);
 }
 
-TEST_CASE("rank: with fitted heights the same mesh is a seventh nearer to the map as given") {
+TEST_CASE("rank: fitted heights bring the same mesh a seventh closer to the original map") {
     const TestFolder here;
     const Arguments threshold{"--set", "tests.rank_threshold=0.038"};
     const CraterLakeRun given = ranked(here, threshold);
@@ -106,7 +106,7 @@ TEST_CASE("rank: from the crater's rim 2,400 triangles show less than half the e
     CHECK(found.rms_pixels < 3.37 / 2);
 }
 
-TEST_CASE("rank: from the crater's rim no grid point appears farther from the mesh than the bound says") {
+TEST_CASE("rank: from the crater's rim no grid point appears farther from the mesh than the bound") {
     const TestFolder here;
     for (const char* const bits : {"8", "16"}) {
         const CraterLakeRun found =
@@ -119,7 +119,7 @@ TEST_CASE("rank: from the crater's rim no grid point appears farther from the me
     }
 }
 
-TEST_CASE("rank: a base mesh that the test cannot split is named, with one that it can") {
+TEST_CASE("rank: a base mesh that the test cannot split is reported, with one that it can") {
     const TestFolder here;
     const ProgramEnd end = succeed({"run", "--set", "hardware.height_test=rank", "--set", "mode=functional", "--set",
                                     "mesh.columns=8", "--set", "output.picture=false", "--set", "output.folder=run"},

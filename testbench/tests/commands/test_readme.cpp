@@ -106,7 +106,7 @@ void check_links(const std::string& markdown, const fs::path& folder) {
 
 }  // namespace
 
-TEST_CASE("commands are found in fenced blocks of shell") {
+TEST_CASE("commands are found in fenced shell blocks") {
     const std::string text =
         "Text.\n```sh\n# why\nscripts/run\nscripts/run head \\\n    --set a.b=1\n\n```\n"
         "```toml\n[tests]\n```\n`scripts/none`\n```bash\n  ls\n```\n```\noutput\n```\n";
@@ -122,7 +122,7 @@ TEST_CASE("every command of README.md works") {
         try_command(command, checkout);
 }
 
-TEST_CASE("every command of the folders' READMEs works, and every file they link to is there") {
+TEST_CASE("every command of the folders' READMEs works, and every file they link to exists") {
     const Checkout checkout;
     unsigned commands = 0;
     for (const char* const folder : {"golden", "modules", "scripts", "testbench", "waveforms", ".github"}) {
@@ -141,7 +141,7 @@ TEST_CASE("every command of the folders' READMEs works, and every file they link
     CHECK(commands > 10);
 }
 
-TEST_CASE("every test that modules/README.md names is there") {
+TEST_CASE("every test that modules/README.md names exists") {
     std::string sources;
     for (const auto& entry : fs::recursive_directory_iterator(source_folder() / "testbench/tests"))
         if (entry.path().extension() == ".cpp")
@@ -164,7 +164,7 @@ TEST_CASE("every script parses") {
     }
 }
 
-TEST_CASE("scripts/check lists its checks and runs those named, with their options") {
+TEST_CASE("scripts/check lists its checks and runs the named ones with their options") {
     const Checkout checkout;
     const fs::path checks = checkout.root() / "scripts/checks";
     write_all(checks / "failing", "#!/bin/sh\n# Fails.\nset -e\necho \"failing $*\"\nexit 3\n");
@@ -195,7 +195,7 @@ TEST_CASE("scripts/check lists its checks and runs those named, with their optio
     }
 }
 
-TEST_CASE("scripts/run takes a job by name or by file and hands everything on") {
+TEST_CASE("scripts/run takes a job by name or by file and passes on all options") {
     const Checkout checkout;
     const std::string quick = " --set tests.generation_limit=1 --set output.folder=out";
     const auto works = [&](const std::string& command) {

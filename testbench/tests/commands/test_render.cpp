@@ -56,7 +56,7 @@ TEST_CASE("render: the default is the run's own picture, byte for byte") {
     CHECK(read_all(here.path() / "run/overview.png") == read_all(here.path() / "run/picture.png"));
 }
 
-TEST_CASE("render: pictures do not outlive the mesh they show") {
+TEST_CASE("render: pictures are removed with the mesh they show") {
     const TestFolder here;
     make_run(here.path());
     rendered({"run", "--size", "100x80", "--view", "shaded,test"}, here.path());
@@ -68,7 +68,7 @@ TEST_CASE("render: pictures do not outlive the mesh they show") {
     CHECK(fs::exists(here.path() / "run/mine.png"));
 }
 
-TEST_CASE("render: several views at once, the same as one by one and again") {
+TEST_CASE("render: several views at once equal those drawn one by one, and are the same again") {
     const TestFolder here;
     make_run(here.path());
     rendered({"run", "--size", "300x240", "--view", "shaded,wireframe", "--view", "generation", "--view", "test",
@@ -121,7 +121,7 @@ TEST_CASE("render: camera, zoom, lines and error scale change the picture") {
                    "--up", "0", "0", "1", "--field-of-view", "36"}) == usual);
 }
 
-TEST_CASE("render: EXR files by name or by wish") {
+TEST_CASE("render: EXR files are chosen by file name or by option") {
     const TestFolder here;
     make_run(here.path());
     const std::string magic("\x76\x2f\x31\x01", 4);
@@ -137,7 +137,7 @@ TEST_CASE("render: EXR files by name or by wish") {
     CHECK_FALSE(fs::exists(here.path() / "run/shaded.png"));
 }
 
-TEST_CASE("render: a camera that sees nothing, and a run that emitted nothing, draw an empty picture, with a note") {
+TEST_CASE("render: a camera that sees nothing and a run that emitted nothing give an empty picture with a note") {
     const TestFolder here;
     make_run(here.path());
     CHECK_THAT(rendered({"run", "--size", "100x80", "--view", "shaded", "--eye", "0", "0", "5", "--target", "0", "0",
@@ -184,7 +184,7 @@ TEST_CASE("render: hostile arguments are refused in one line") {
     refused({"render", "run", "--exr", "double"}, here, {"--exr", "half"});
 }
 
-TEST_CASE("render: folders that are no runs, and outputs that cannot be") {
+TEST_CASE("render: folders that are not runs and invalid outputs are refused") {
     const TestFolder here;
     refused({"render"}, here, {"--help"});
     refused({"render", ""}, here, {"RUN"});
@@ -206,7 +206,7 @@ TEST_CASE("render: folders that are no runs, and outputs that cannot be") {
     refused({"render", "run"}, here, {"mesh.ply"});
 }
 
-TEST_CASE("render: a disk that is full ends it with exit code 4 and no picture") {
+TEST_CASE("render: a full disk ends it with exit code 4 and no picture") {
     const TestFolder here;
     make_run(here.path());
     ProgramLimits limits;

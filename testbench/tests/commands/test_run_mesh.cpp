@@ -89,13 +89,13 @@ TEST_CASE("the base vertices of a second run are the first run's emitted vertice
     run(here.path(), "first", small_donut);
     const RecordedMesh first = read_ply(here.path() / "runs/first/mesh.ply");
     const std::vector<std::string> no_splits{"displacement.scale=0", "tests.normal=false", "tests.summed_height=false"};
-    SECTION("with a map of the same size texture coordinates are the same to the bit") {
+    SECTION("with a map of the same size texture coordinates are identical") {
         std::vector<std::string> settings = no_splits;
         settings.insert(settings.end(), {"map.source=constant", "map.width=64", "map.height=64"});
         const RunFolder second = run(here.path(), "second", on("first", settings));
         check_same_mesh(first, read_ply(here.path() / "runs/second/mesh.ply"), step(second) / 2, 0);
     }
-    SECTION("with another, half a step of its format off") {
+    SECTION("with another size they differ by half a step of its format") {
         std::vector<std::string> settings = no_splits;
         settings.insert(settings.end(), {"map.source=constant", "map.width=100", "map.height=7"});
         const RunFolder second = run(here.path(), "second", on("first", settings));
@@ -103,7 +103,7 @@ TEST_CASE("the base vertices of a second run are the first run's emitted vertice
     }
 }
 
-TEST_CASE("a second map of nothing changes nothing but what the Normal Test sees anew") {
+TEST_CASE("a second map without heights leaves the mesh as it is") {
     const TestFolder here;
     run(here.path(), "first", small_donut);
     const RunFolder second =
@@ -126,7 +126,7 @@ TEST_CASE("the seam of a cylinder stays closed under a second map of another siz
                                   "tests.view_threshold=12"})));
 }
 
-TEST_CASE("a run on a run is the same twice, and from its own folder") {
+TEST_CASE("a run on a run is the same again, and from its own folder") {
     const TestFolder here;
     run(here.path(), "first", small_donut);
     const std::vector<std::string> settings = on("first", {"map.source=text", "displacement.scale=0.05"});
@@ -137,7 +137,7 @@ TEST_CASE("a run on a run is the same twice, and from its own folder") {
     require_same_files(once, RunFolder(here.path() / "runs/second").files());
 }
 
-TEST_CASE("a run on a run of an OBJ file stands as that did") {
+TEST_CASE("a run on a run of an OBJ file keeps its up direction") {
     const TestFolder here;
     write_all(here.path() / "upright.obj",
               "v -1 0 -1\nv 1 0 -1\nv 0 0 1\nv 0 4 0\nf 1 2 3\nf 1 4 2\nf 2 4 3\nf 3 4 1\n");
@@ -177,7 +177,7 @@ TEST_CASE("compare and render read a run on a run, and the first run's own input
                Contains("mesh.file") && Contains("../first") && Contains("is not there"));
 }
 
-TEST_CASE("a base mesh that is no finished run's is refused with what it is") {
+TEST_CASE("a base mesh that is not a finished run's is refused with the reason") {
     const TestFolder here;
     refused(arguments_of({"mesh.source=run"}), here.path(), {"mesh.file", "folder of a run"});
     refused(arguments_of(on("absent", {})), here.path(), {"runs/absent: no such folder"});
@@ -194,7 +194,7 @@ TEST_CASE("a base mesh that is no finished run's is refused with what it is") {
     refused(arguments_of(on("first", {})), here.path(), {"--set output.ply=true"});
 }
 
-TEST_CASE("a run takes away neither the mesh file nor the map file that it reads") {
+TEST_CASE("a run removes neither the mesh file nor the map file that it reads") {
     const TestFolder here;
     run(here.path(), "first", {"tests.generation_limit=1", "output.obj=true"});
     const std::string mesh = read_all(here.path() / "runs/first/mesh.obj");
@@ -214,7 +214,7 @@ TEST_CASE("a run takes away neither the mesh file nor the map file that it reads
     CHECK(fs::exists(here.path() / "runs/first/base.obj"));
 }
 
-TEST_CASE("a run that is cut short in its folder leaves the job and the mesh of the run before it") {
+TEST_CASE("a run that is cut short in its folder leaves the earlier run's job and mesh") {
     const TestFolder here;
     run(here.path(), "one", {"tests.generation_limit=3"});
     const fs::path folder = here.path() / "runs/one";
@@ -247,7 +247,7 @@ TEST_CASE("the teapot's donuts take a second map") {
         CHECK(second.invariant(figure) == 0);
 }
 
-TEST_CASE("a run on files that were changed since is not measured or drawn against them, nor run again") {
+TEST_CASE("a run whose input files have changed since is not measured, drawn or run again") {
     const TestFolder here;
     run(here.path(), "first", small_donut);
     write_all(here.path() / "map.pgm", "P2 3 2 9\n0 9 5\n1 2 3\n");

@@ -27,7 +27,7 @@ std::string value_of(const std::string& text, const std::string& name) {
 
 }  // namespace
 
-TEST_CASE("summary: counts of the machine, each in its place") {
+TEST_CASE("summary: each count of the machine is in its place") {
     HandMadeRun run;
     run.setup.remarks = {"a remark"};
     const std::string text = summary(run.setup, run.simulation, {6, 4, 7}, {}, 0.5);
@@ -59,7 +59,7 @@ TEST_CASE("summary: counts of the machine, each in its place") {
     CHECK(value_of(other, "distinct vertices") == "0; 33 computed, 13 of them discarded, and 15 normals transformed");
 }
 
-TEST_CASE("summary: seconds and edges a second") {
+TEST_CASE("summary: seconds and edges per second are printed") {
     HandMadeRun run;
     Checks checks;
     checks.work.emplace();
@@ -68,7 +68,7 @@ TEST_CASE("summary: seconds and edges a second") {
           "simulated in 0.00 s, 2.20 million edges a second, with the checks of each edge");
 }
 
-TEST_CASE("summary: what was checked") {
+TEST_CASE("summary: each check is listed with its result") {
     HandMadeRun run;
     Checks checks;
     ConformanceResult conformance;
@@ -141,7 +141,7 @@ TEST_CASE("summary: what was checked") {
     CHECK_THAT(value_of(other, "texture seams"), Catch::StartsWith("9 edges open: "));
 }
 
-TEST_CASE("the run's verdict: one part that fails fails it") {
+TEST_CASE("the run's verdict: one failed part fails it") {
     const auto wrong = [](auto& part, auto figure) {
         part.emplace();
         (*part).*figure = 1;
@@ -182,7 +182,7 @@ TEST_CASE("the run's verdict: one part that fails fails it") {
 }
 
 // 86 cycles (modules/test_one_triangle.cpp), of 5 ns; one pass of three edges.
-TEST_CASE("summary: a timed run of one triangle") {
+TEST_CASE("summary: a timed run of one triangle is summarised") {
     Job job = timed_job();
     job.mesh.columns = job.mesh.rows = 1;
     job.map.source = MapSource::constant;
@@ -207,7 +207,7 @@ TEST_CASE("summary: a timed run of one triangle") {
 }
 
 // Two base triangles with four children each, and two places: at least one of the second's children is spilled.
-TEST_CASE("summary: a queue that spills") {
+TEST_CASE("summary: spilled triangles are reported") {
     Job job = full_split_job(1, 1);
     job.hardware.queue_capacity = 2;
     TimedRun simulation(setup_of(job));

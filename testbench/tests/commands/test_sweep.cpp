@@ -65,7 +65,7 @@ std::size_t results_in(const fs::path& store) {
 
 }  // namespace
 
-TEST_CASE("sweep: a row a design, the front marked, a failed run as a row with its reason") {
+TEST_CASE("sweep: each design is a row, the front is marked, a failed run is a row with its reason") {
     if (!sweeps_run())
         return;
     const Checkout checkout;
@@ -128,7 +128,7 @@ TEST_CASE("sweep: a row a design, the front marked, a failed run as a row with i
     CHECK_THAT(checkout.run("scripts/sweep small.toml --check").err, Contains("9 designs; 8 runs to do"));
 }
 
-TEST_CASE("sweep: a run that comes to no end is a row, and is tried again") {
+TEST_CASE("sweep: a run that does not end is a row, and is tried again") {
     if (!sweeps_run())
         return;
     const Checkout checkout;
@@ -163,7 +163,7 @@ TEST_CASE("sweep: workers that share a study search some of the designs, each ru
     CHECK(other.exit_code == 0);
 }
 
-TEST_CASE("sweep: the error of each design is measured if a figure asks for it") {
+TEST_CASE("sweep: the error of each design is measured if a figure needs it") {
     if (!sweeps_run())
         return;
     const Checkout checkout;
@@ -196,7 +196,7 @@ TEST_CASE("sweep: the first commands of its README run") {
     CHECK(commands == 2);
 }
 
-TEST_CASE("sweep: where Slurm cannot start, its check is told why") {
+TEST_CASE("sweep: if Slurm does not start, its test gets the reason") {
     const Checkout checkout;
     for (const char* const tool : {"munged", "slurmctld", "slurmd", "sbatch"}) {
         write_all(checkout.root() / "tools" / tool, "#!/bin/sh\nexit 1\n");
@@ -208,7 +208,7 @@ TEST_CASE("sweep: where Slurm cannot start, its check is told why") {
     CHECK_THAT(end.err, Contains("slurm_cluster: munged does not start") || Contains("only as root"));
 }
 
-TEST_CASE("sweep: what cannot be run is refused before the first run, with file and line") {
+TEST_CASE("sweep: an invalid study is refused before the first run, with file and line") {
     const Checkout checkout;
     const auto [from, to, message] = GENERATE(table<std::string, std::string, std::string>({
         {"table_ports\"", "table_port\"", "small.toml:15: unknown key `timing.summed_height_table_port`"},

@@ -21,7 +21,7 @@ const Arguments small{"map.width=64", "map.height=64", "output.picture=false"};
 
 }  // namespace
 
-TEST_CASE("timed run: a full queue that stalls ends with exit code 3 and says who holds what") {
+TEST_CASE("timed run: a full queue that stalls ends with exit code 3 and names the waiting units") {
     const TestFolder here;
     const ProgramEnd end =
         run_tessera(timed_run("out", {"hardware.queue_capacity=8", "hardware.queue_overflow=stall"}), here.path());
@@ -40,7 +40,7 @@ TEST_CASE("timed run: no progress within the bound ends with exit code 3") {
     CHECK_THAT(end.err, Contains("tessera: livelock: ") && Contains("limits.cycles_without_progress = 10"));
 }
 
-TEST_CASE("timed run: to be slow is no livelock") {
+TEST_CASE("timed run: slow progress is not a livelock") {
     const TestFolder here;
     const Arguments tiny{"tests.generation_limit=1", "output.picture=false", "check.end_to_end=false"};
     for (const std::vector<std::string>& slow : std::vector<std::vector<std::string>>{
@@ -50,7 +50,7 @@ TEST_CASE("timed run: to be slow is no livelock") {
         succeed(timed_run("out", tiny + slow), here.path());
 }
 
-TEST_CASE("timed run: off-chip memory that is full ends with exit code 4 and names the key") {
+TEST_CASE("timed run: full off-chip memory ends with exit code 4 and names the key") {
     const TestFolder here;
     for (const std::string order : {"fifo", "lifo"}) {
         const ProgramEnd end = run_tessera(
@@ -80,7 +80,7 @@ TEST_CASE("timed run: a queue that may not overflow ends with exit code 4 and na
     CHECK_THAT(end.err, Contains("hardware.queue_capacity = 8"));
 }
 
-TEST_CASE("timed run: the same job twice leaves the same bytes") {
+TEST_CASE("timed run: the same job twice writes the same bytes") {
     const TestFolder here;
     const Arguments settings =
         small + Arguments{"hardware.queue_capacity=8", "hardware.tests_units=3", "timing.stalls_per_mille=200"};

@@ -36,7 +36,7 @@ void check_by_run_and_compare(const fs::path& folder, const std::string& name) {
 
 }  // namespace
 
-TEST_CASE("tune writes a job that runs to the figures it tells, and the same bytes again") {
+TEST_CASE("tune writes a job that runs with the reported figures, and the same bytes again") {
     const TestFolder here;
     const Arguments tune = Arguments{"tune", "--triangles", "600", "--tried", "tried.csv"} + small_map;
     succeed(tune, here.path());
@@ -55,7 +55,7 @@ TEST_CASE("tune writes a job that runs to the figures it tells, and the same byt
         CHECK(read_all(again.path() / name) == read_all(here.path() / name));
 }
 
-TEST_CASE("tune chooses a base mesh, writes a lattice beside the job, and keeps a bound") {
+TEST_CASE("tune chooses a base mesh, writes a lattice beside the job and keeps a bound") {
     const TestFolder here;
     fs::create_directory(here.path() / "found");
     succeed(Arguments{"tune", "--triangles", "900", "--grid", "lattice16", "--output", "found/lattice.toml", "--set",
@@ -75,7 +75,7 @@ TEST_CASE("tune chooses a base mesh, writes a lattice beside the job, and keeps 
     check_by_run_and_compare(here.path(), "bound");
 }
 
-TEST_CASE("a bound on the error holds for the error that compare measures, to the last bit") {
+TEST_CASE("a bound on the error holds for the error that compare measures, bit for bit") {
     const TestFolder here;
     const auto error_for = [&](const char* option, const std::string& value) {
         succeed(Arguments{"tune", option, value, "--vary", "none", "--grid", "5x7", "--set", "tests.view=false"} +
@@ -90,7 +90,7 @@ TEST_CASE("a bound on the error holds for the error that compare measures, to th
     }
 }
 
-TEST_CASE("tune finds a Rank Test's threshold, and a Bound Test's promise is kept") {
+TEST_CASE("tune finds a Rank Test's threshold, and a Bound Test's bound holds") {
     const TestFolder here;
     const std::string job = (source_folder() / "testbench/examples/jobs/crater_lake_rank.toml").string();
     succeed({"tune", job, "--triangles", "2400", "--set", "formats.rank_bits=10"}, here.path());
@@ -131,7 +131,7 @@ TEST_CASE("tune chooses between the paper's tests and a Rank Test") {
     check_by_run_and_compare(here.path(), "tuned");
 }
 
-TEST_CASE("tune works where the surface is no height field") {
+TEST_CASE("tune works on a surface that is not a height field") {
     const TestFolder here;
     succeed(Arguments{"tune", "--triangles", "1200", "--set", "mesh.source=cylinder", "--set", "mesh.columns=12",
                       "--set", "mesh.rows=6", "--set", "map.address_u=repeat", "--set", "displacement.scale=0.1"} +
@@ -155,7 +155,7 @@ TEST_CASE("tune finds thresholds for Crater Lake") {
     check_by_run_and_compare(here.path(), "tuned");
 }
 
-TEST_CASE("tune refuses wrong usage and goals out of reach, and leaves nothing") {
+TEST_CASE("tune refuses wrong usage and unreachable goals, and writes nothing") {
     const TestFolder here;
     const auto tune = [&](const Arguments& more) { return refused(Arguments{"tune"} + more + small_map, here.path()); };
     CHECK_THAT(tune({}), Contains("--triangles") && Contains("--error") && Contains("tune --help"));
@@ -201,7 +201,7 @@ TEST_CASE("tune refuses wrong usage and goals out of reach, and leaves nothing")
     CHECK(here.names().empty());
 }
 
-TEST_CASE("tune overwrites nothing that it reads and nobody's mesh") {
+TEST_CASE("tune overwrites neither its inputs nor any mesh") {
     const TestFolder here;
     write_all(here.path() / "mine.toml", "[map]\nwidth = 32\nheight = 32\n");
     write_all(here.path() / "own.obj", "# mine\nv 0 0 0\n");

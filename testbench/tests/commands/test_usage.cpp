@@ -10,7 +10,7 @@ using namespace tessera;
 using Catch::Contains;
 namespace fs = std::filesystem;
 
-TEST_CASE("wrong usage is refused in one line that says how to find help") {
+TEST_CASE("wrong usage is refused in one line that names the help option") {
     const TestFolder here;
     for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{{},
                                                                                            {"rum"},
@@ -26,7 +26,7 @@ TEST_CASE("wrong usage is refused in one line that says how to find help") {
     CHECK(here.names().empty());
 }
 
-TEST_CASE("a mistyped key is refused with file, line and what was meant") {
+TEST_CASE("a mistyped key is refused with file, line and a suggestion") {
     const TestFolder here;
     write_all(here.path() / "job.toml", "[tests]\nnormal = true\nview_treshold = 2\n");
     refused({"run", "job.toml"}, here, {"job.toml:3:", "view_treshold", "view_threshold"});
@@ -40,7 +40,7 @@ TEST_CASE("a mistyped key is refused with file, line and what was meant") {
     refused({"run", "job.toml", "--dump-config"}, here, {"job.toml:1:"});
 }
 
-TEST_CASE("a setting that is unknown, out of range or no setting is refused") {
+TEST_CASE("a setting that is unknown, out of range or malformed is refused") {
     const TestFolder here;
     refused({"run", "--set", "tests.view_treshold=2"}, here, {"tests.view_treshold", "tests.view_threshold"});
     refused({"run", "--set", "nonsense=2"}, here, {"nonsense", "tessera keys"});
@@ -55,7 +55,7 @@ TEST_CASE("a setting that is unknown, out of range or no setting is refused") {
             {"camera.eye", "camera.target"});
 }
 
-TEST_CASE("a run folder that cannot be is refused before the work") {
+TEST_CASE("an invalid run folder is refused before the run") {
     const TestFolder here;
     write_all(here.path() / "file", "mine");
     refused({"run", "--set", "output.folder=file"}, here, {"output.folder", "file"});
@@ -90,7 +90,7 @@ TEST_CASE("a stated limit ends a run with exit code 4, one message and no trace"
         CHECK_THAT(end.err, Contains("limits.triangles = 1000"));
         CHECK(here.names().empty());
     }
-    SECTION("exactly as many triangles are not too many") {
+    SECTION("exactly the allowed number of triangles") {
         const ProgramEnd whole = run_tessera({"run", "--set", folder}, here.path());
         REQUIRE(whole.exit_code == 0);
         const std::uint64_t triangles = RunFolder(here.path() / "out").count("run", "triangles_finished");
@@ -136,7 +136,7 @@ TEST_CASE("the largest map runs") {
     CHECK(run.count("displacement_map", "size") == std::uint64_t{4096} * 4096 * 2);
 }
 
-TEST_CASE("help and version are asked for and given") {
+TEST_CASE("help and version are printed on request") {
     const TestFolder here;
     for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
              {"--help"}, {"-h"}, {"run", "--help"}, {"keys", "--help"}, {"--version"}}) {
@@ -204,7 +204,7 @@ TEST_CASE("keys lists every key of a dumped job") {
     CHECK(keys == declared);
 }
 
-TEST_CASE("a reader that goes away early ends the program quietly") {
+TEST_CASE("a reader that closes the pipe early ends the program quietly") {
     const TestFolder here;
     const ProgramEnd end =
         run_program({"bash", "-c", "\"$0\" keys | head -n 1 > /dev/null", tessera_program()}, here.path());

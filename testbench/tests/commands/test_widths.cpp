@@ -75,7 +75,7 @@ TEST_CASE("widths: a row of saturated screen positions has the run's count, and 
     CHECK_THAT(run.out, Contains("warning: screen position: ") && Contains("formats.screen_bits"));
 }
 
-TEST_CASE("widths: a map that the mesh's quads do not divide: the sweep warns") {
+TEST_CASE("widths: a map not divisible by the mesh's quads gives a warning") {
     const TestFolder here;
     const auto sweep = [&](const char* side) {
         const std::string text =
@@ -90,7 +90,7 @@ TEST_CASE("widths: a map that the mesh's quads do not divide: the sweep warns") 
     CHECK_THAT(sweep("72"), !Contains("warning: "));
 }
 
-TEST_CASE("widths: the same bytes again, with two threads, into a folder or a file") {
+TEST_CASE("widths: the output is identical again, with two threads, into a folder or a file") {
     const TestFolder here;
     const Arguments sweep = Arguments{"widths", "--quantity", "position,displacement", "--bits", "10..12"} + quick;
     const ProgramEnd first = succeed(sweep + Arguments{"--output", "a"}, here.path());
@@ -101,7 +101,7 @@ TEST_CASE("widths: the same bytes again, with two threads, into a folder or a fi
     CHECK(first.out.substr(0, first.out.find("written")) == second.out.substr(0, second.out.find("written")));
 }
 
-TEST_CASE("widths: wrong usage is refused in one line, and leaves nothing") {
+TEST_CASE("widths: wrong usage is refused in one line, and nothing is written") {
     const TestFolder here;
     const auto sweep_refused = [&](const Arguments& more) {
         return refused(Arguments{"widths"} + more + quick, here.path());
@@ -134,7 +134,7 @@ TEST_CASE("widths: wrong usage is refused in one line, and leaves nothing") {
     CHECK(read_all(here.path() / "m.csv") == "P2 2 2 9 1 2 3 4\n");
 }
 
-TEST_CASE("widths: a sweep of which every width is refused is no result") {
+TEST_CASE("widths: a sweep with every width refused fails") {
     const TestFolder here;
     const ProgramEnd end = run_tessera(
         Arguments{"widths", "--quantity", "screen", "--bits", "10..14", "--output", "w"} + quick, here.path());

@@ -108,14 +108,14 @@ Files files_after(const std::vector<std::string>& arguments, const fs::path& fol
 
 }  // namespace
 
-TEST_CASE("a run whose disk is full or fails at any call, or that is interrupted, leaves all or nothing") {
+TEST_CASE("a run whose disk is full or fails at any call, or that is interrupted, writes all files or none") {
     const TestFolder here;
     Expected expected{{}, files_after(run_arguments("1"), here.path())};
     REQUIRE(expected.after.size() > 10);
-    SECTION("no run before it") {
+    SECTION("no earlier run") {
         expected.before = {};
     }
-    SECTION("a run before it, of another map") {
+    SECTION("an earlier run with another map") {
         expected.before = files_after(run_arguments("2"), here.path());
         REQUIRE(expected.before != expected.after);
     }
@@ -123,7 +123,7 @@ TEST_CASE("a run whose disk is full or fails at any call, or that is interrupted
         check_ends_well(run_arguments("1"), here.path(), expected, what);
 }
 
-TEST_CASE("a run that is killed leaves no half file, and no job beside another's mesh") {
+TEST_CASE("a killed run leaves no partial file, and no job beside another run's mesh") {
     const TestFolder here;
     const Files old_run = files_after(run_arguments("2"), here.path());
     const Files new_run = files_after(run_arguments("1"), here.path());
@@ -174,7 +174,7 @@ TEST_CASE("a folder that is not for a run is refused") {
     CHECK(read_all(here.path() / "work/deep/mine/picture.png") == "mine");
 }
 
-TEST_CASE("an output that is a link is replaced, and what it leads to stays") {
+TEST_CASE("an output that is a link is replaced, and its target stays") {
     const TestFolder here;
     files_after(run_arguments("1"), here.path());
     const fs::path run = here.path() / "out/run", input = here.path() / "input";
@@ -212,7 +212,7 @@ TEST_CASE("an output that is a link is replaced, and what it leads to stays") {
                    {out / "widths.csv", out / "widths.json"});
 }
 
-TEST_CASE("runs at once into one folder, a link to elsewhere, leave one run there") {
+TEST_CASE("concurrent runs into one folder, through a link, leave one run there") {
     const TestFolder here;
     const Files expected = files_after(run_arguments("1"), here.path());
     fs::remove_all(here.path() / "out/run");
@@ -236,7 +236,7 @@ TEST_CASE("runs at once into one folder, a link to elsewhere, leave one run ther
     }
 }
 
-TEST_CASE("an input whose name lies in the output folder stays, wherever it leads") {
+TEST_CASE("an input in the output folder stays, even if it is a link") {
     const TestFolder here;
     files_after(run_arguments("1"), here.path());
     write_all(here.path() / "map.pgm", "P2 2 2 9\n0 9 5 1\n");
@@ -246,7 +246,7 @@ TEST_CASE("an input whose name lies in the output folder stays, wherever it lead
     CHECK(fs::is_symlink(here.path() / "out/run/picture.png"));
 }
 
-TEST_CASE("a built checkout that cannot be written runs") {
+TEST_CASE("a built read-only checkout runs") {
     const TestFolder here;
     const Checkout checkout;
     // What ninja prints about an up-to-date build folder.
@@ -281,7 +281,7 @@ TEST_CASE("a built checkout that cannot be written runs") {
     CHECK_THAT(old.err, Contains("build/release is not up to date and cannot be written"));
 }
 
-TEST_CASE("what cannot be taken away or replaced leaves the earlier run as it was") {
+TEST_CASE("a file that cannot be removed or replaced leaves the earlier run unchanged") {
     const TestFolder here;
     const fs::path run = here.path() / "out/run";
     Files old_run = files_after(run_arguments("2"), here.path());
@@ -324,7 +324,7 @@ TEST_CASE("what cannot be taken away or replaced leaves the earlier run as it wa
     CHECK(files_in(here.path() / "out") == old_run);
 }
 
-TEST_CASE("an interrupted run says how far it was") {
+TEST_CASE("an interrupted run reports its progress") {
     const TestFolder here;
     const Arguments arguments = Arguments{"run", "--vcd"} + set({"map.width=512", "map.height=512",
                                                                  "output.trace_to=10000000", "output.folder=out/run"});
@@ -335,9 +335,7 @@ TEST_CASE("an interrupted run says how far it was") {
     CHECK(here.names().empty());
 }
 
-TEST_CASE(
-    "compare, render, bake and tune leave whole files or none when the disk is full or they are "
-    "interrupted") {
+TEST_CASE("compare, render, bake and tune write whole files or none if the disk is full or they are interrupted") {
     const TestFolder here;
     const std::vector<std::string> run = run_arguments("1");
     const Files before = files_after(run, here.path());
@@ -358,7 +356,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("a summary that cannot be printed is an error, and the results are whole") {
+TEST_CASE("a summary that cannot be printed is an error, and the results are complete") {
     const TestFolder here;
     const Files expected = files_after(run_arguments("1"), here.path());
     std::string line = tessera_program();

@@ -5,7 +5,7 @@
 
 using namespace tessera;
 
-TEST_CASE("distinct table: items get their numbers in the order they come, whatever their hashes") {
+TEST_CASE("distinct table: items are numbered in order of arrival, for any hashes") {
     const std::uint64_t hashes = GENERATE(1u, 7u, 1'000'000u);  // number of different hashes
     const auto hash = [&](std::uint64_t item) { return mix_hash(0, item % hashes); };
     DistinctTable table;

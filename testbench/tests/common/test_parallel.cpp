@@ -24,7 +24,7 @@ TEST_CASE("every chunk is handed out once, on any number of threads") {
     CHECK(thread_count() >= 1);
 }
 
-TEST_CASE("work within work stays on its thread") {
+TEST_CASE("nested work stays on its thread") {
     const OnThreads on(2);
     std::vector<int> elsewhere(4, 0);
     for_each_chunk(elsewhere.size(), [&] {
@@ -38,7 +38,7 @@ TEST_CASE("work within work stays on its thread") {
     CHECK(std::accumulate(elsewhere.begin(), elsewhere.end(), 0) == 0);
 }
 
-TEST_CASE("work within work of one thread may use several") {
+TEST_CASE("work nested in work of one thread may use several") {
     const OnThreads on(2);
     for (const std::size_t tasks : {1U, 4U}) {
         std::atomic<std::size_t> done{0}, workers{0};
@@ -54,7 +54,7 @@ TEST_CASE("work within work of one thread may use several") {
     }
 }
 
-TEST_CASE("an exception on any thread reaches the caller, the lowest chunk's first") {
+TEST_CASE("of exceptions on any threads the lowest chunk's reaches the caller") {
     for (const std::size_t threads : {1U, 3U}) {
         const OnThreads on(threads);
         const auto fail = [](std::size_t from) {
@@ -70,7 +70,7 @@ TEST_CASE("an exception on any thread reaches the caller, the lowest chunk's fir
     }
 }
 
-TEST_CASE("items in the background are taken in order, up to the one that fails") {
+TEST_CASE("background items are processed in order, up to the one that fails") {
     for (const std::size_t threads : {1U, 2U}) {
         const OnThreads on(threads);
         for (const std::size_t count : {0U, 1U, 127U, 128U, 129U, 1024U, 5000U}) {
@@ -102,7 +102,7 @@ TEST_CASE("items in the background are taken in order, up to the one that fails"
     }
 }
 
-TEST_CASE("work beside the caller's gives its result or what it threw") {
+TEST_CASE("work beside the caller's returns its result or its exception") {
     for (const std::size_t threads : {1U, 2U}) {
         const OnThreads on(threads);
         const std::thread::id here = std::this_thread::get_id();

@@ -59,7 +59,7 @@ Vertex random_vertex(Random& random, double low_u, double high_u, double low_v, 
 
 }  // namespace
 
-TEST_CASE("edge: each test on operands worked out by hand") {
+TEST_CASE("edge: each test decides operands worked out by hand") {
     std::vector<double> codes = constant_codes(16, 16, 0);
     codes[4 * 16 + 8] = 100;
     Map map(16, 16, AddressMode::clamp, AddressMode::clamp, codes);
@@ -96,7 +96,7 @@ TEST_CASE("edge: each test on operands worked out by hand") {
         // The peak under an end counts once instead of twice, with the opposite sign.
         CHECK(evaluate_edge(vertex(8.5, 4.5), vertex(14.5, 4.5), map, p).summed_height == 100);
     }
-    SECTION("normal: largest of six, against either end") {
+    SECTION("normal: the largest of six differences, against either end") {
         p.enabled.summed_height = false;
         std::vector<glm::dvec3> normals(256, glm::dvec3(0, 0, 1));
         normals[8] = {0.6, 0, 0.8};
@@ -139,7 +139,7 @@ TEST_CASE("edge: each test on operands worked out by hand") {
         p.enabled.tex_coord = false;
         CHECK(evaluate_edge(vertex(2.1, 2), vertex(3.5, 2), map, p).tex_coord_test);
     }
-    SECTION("generation: the inserted vertex's, at most the limit") {
+    SECTION("generation: that of the inserted vertex is at most the limit") {
         Vertex i = vertex(2, 2), j = vertex(9, 2);
         j.generation = 11;
         CHECK(evaluate_edge(i, j, map, p).generation_test);
@@ -148,7 +148,7 @@ TEST_CASE("edge: each test on operands worked out by hand") {
         p.enabled.generation = false;
         CHECK(evaluate_edge(i, j, map, p).generation_test);
     }
-    SECTION("every one of them is needed for a split") {
+    SECTION("every test is needed for a split") {
         const Vertex i = vertex(4.5, 4.5), j = vertex(12.5, 4.5);
         CHECK(evaluate_edge(i, j, map, p).split);
         Parameters no = p;
@@ -190,7 +190,7 @@ TEST_CASE("edge: summed height equals its definition, texel by texel") {
     }
 }
 
-TEST_CASE("constant map splits nothing, wherever the edge lies") {
+TEST_CASE("a constant map splits no edge at any position") {
     Random random;
     for (const auto& [width, height] : sizes) {
         for (const AddressMode mode : both_modes) {
@@ -216,7 +216,7 @@ TEST_CASE("constant map splits nothing, wherever the edge lies") {
     }
 }
 
-TEST_CASE("map constant over the edge's three rectangles: no summed height") {
+TEST_CASE("a map constant over the edge's three rectangles has no summed height") {
     Random random;
     for (const AddressMode mode : both_modes) {
         for (int k = 0; k < 200; ++k) {
@@ -235,7 +235,7 @@ TEST_CASE("map constant over the edge's three rectangles: no summed height") {
     }
 }
 
-TEST_CASE("edge: deciding (i,j) is deciding (j,i), to the last bit") {
+TEST_CASE("edge: (i,j) and (j,i) are decided alike, bit for bit") {
     Random random;
     for (const auto& [width, height] : sizes) {
         for (const AddressMode mode : both_modes) {
@@ -261,7 +261,7 @@ TEST_CASE("edge: deciding (i,j) is deciding (j,i), to the last bit") {
     }
 }
 
-TEST_CASE("repeat: an edge any number of periods away decides alike") {
+TEST_CASE("repeat: an edge any number of periods away decides the same") {
     Random random;
     Map map(12, 19, AddressMode::repeat, AddressMode::repeat, random_codes(12, 19, random));
     map.derive_normals(1e-4, {0.1, 0.2});
@@ -281,7 +281,7 @@ TEST_CASE("repeat: an edge any number of periods away decides alike") {
     }
 }
 
-TEST_CASE("edge: as the viewer sees it, thresholds worked out by hand") {
+TEST_CASE("edge: thresholds as the viewer sees them equal those worked out by hand") {
     CHECK(eye_distance({3, -4, 0}) == Approx(7 * 11.0 / 16));
     CHECK(eye_distance({-5, 1, 1}) == 5);
     CHECK(eye_distance({2, 2, -2}) == Approx(6 * 9.0 / 16));

@@ -43,7 +43,7 @@ struct Row {
 
 }  // namespace
 
-TEST_CASE("highlight: each of the three normals, and none") {
+TEST_CASE("highlight: each of the three normals can lie in the highlight, or none") {
     Row row;
     EdgeEvaluation e = row.edge(8.5, 14.5);  // one end: 1 and 0.8
     CHECK(e.end_cosine == Approx(1));
@@ -64,7 +64,7 @@ TEST_CASE("highlight: each of the three normals, and none") {
     CHECK_FALSE(row.edge(2.5, 6.5).split);
 }
 
-TEST_CASE("highlight: strictly above the cosine and the threshold") {
+TEST_CASE("highlight: true only strictly above the cosine and the threshold") {
     Row row;
     row.p.half_vector = {0, 0, 1};
     const auto asks = [&](double cosine, double threshold) {
@@ -78,7 +78,7 @@ TEST_CASE("highlight: strictly above the cosine and the threshold") {
     CHECK_FALSE(row.edge(10.5, 14.5).highlight_test);  // equal normals
 }
 
-TEST_CASE("highlight: switched off it is false, and only allowed splits happen") {
+TEST_CASE("highlight: it splits only edges within the generation limit, and is false if switched off") {
     Row row;
     row.p.generation_limit = 0;
     CHECK(row.edge(8.5, 14.5).highlight_test);

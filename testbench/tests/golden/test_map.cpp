@@ -14,7 +14,7 @@
 using namespace tessera::golden;
 using namespace tessera::golden::testing;
 
-TEST_CASE("table: four reads equal the sum texel by texel") {
+TEST_CASE("table: four reads give the sum of the texels") {
     Random random;
     for (const auto& [width, height] : sizes) {
         for (const bool constant : {true, false}) {
@@ -61,7 +61,7 @@ TEST_CASE("map: unusable input is refused") {
     CHECK_THROWS_AS(map.set_normals({{0, 0, 1}}), std::invalid_argument);
 }
 
-TEST_CASE("map: nearest texel, borders, and any number of periods") {
+TEST_CASE("map: the nearest texel is read at borders and over any number of periods") {
     Random random;
     const Map clamped(5, 3, AddressMode::clamp, AddressMode::clamp, random_codes(5, 3, random));
     const Map repeated(5, 3, AddressMode::repeat, AddressMode::repeat, random_codes(5, 3, random));
@@ -77,7 +77,7 @@ TEST_CASE("map: nearest texel, borders, and any number of periods") {
     CHECK(mixed.texel({5, 3}) == 10);
 }
 
-TEST_CASE("map: between four texels, borders, and any number of periods") {
+TEST_CASE("map: four texels are interpolated, at borders and over any number of periods") {
     const Filter filter = Filter::bilinear;
     const std::vector<double> codes{10, 20, 60, 30, 50, 10};  // 3 x 2
     const Map clamped(3, 2, AddressMode::clamp, AddressMode::clamp, codes);
@@ -108,7 +108,7 @@ TEST_CASE("map: normals between texels are weighted and not normalised") {
     CHECK(map.normal({1, 0.5}, Filter::nearest) == glm::dvec3(0, 0, 1));
 }
 
-TEST_CASE("map: rectangles of the Summed Height Test") {
+TEST_CASE("map: the rectangles of the Summed Height Test are those worked out by hand") {
     const auto same = [](const Rectangle& r, std::int64_t x, std::int64_t y, std::int64_t w, std::int64_t h) {
         return r.x == x && r.y == y && r.width == w && r.height == h;
     };
@@ -132,7 +132,7 @@ TEST_CASE("map: rectangles of the Summed Height Test") {
     CHECK(same(repeated.rectangle_about({-95.5, 16.5}, size), 30, 15, 4, 3));
 }
 
-TEST_CASE("map: the Curvature Table's nearest cell, of two the higher, at each level") {
+TEST_CASE("map: the Curvature Table's nearest cell is read at each level, the higher of two") {
     Map map(21, 13, AddressMode::clamp, AddressMode::repeat, std::vector<double>(std::size_t{21} * 13, 0));
     // Levels 2 to 5, with cells every 2, 4, 8, 16 texels up to the nearest to texels 20 and 12; each holds its number.
     const std::vector<std::array<int, 2>> cells = {{11, 7}, {6, 4}, {4, 3}, {2, 2}};
@@ -158,7 +158,7 @@ TEST_CASE("map: the Curvature Table's nearest cell, of two the higher, at each l
     CHECK(map.curvature({3, 3}, 9).xx == map.curvature({3, 3}, 5).xx);
 }
 
-TEST_CASE("map: other heights are what the displacement map holds, and nothing else") {
+TEST_CASE("map: other heights replace the displacement map and nothing else") {
     const std::vector<double> codes{1, 2, 9, 4, 4, 6};
     Map map(3, 2, AddressMode::clamp, AddressMode::clamp, codes);
     map.derive_normals(0.1, {1, 1});
@@ -171,7 +171,7 @@ TEST_CASE("map: other heights are what the displacement map holds, and nothing e
     CHECK_THROWS_AS(map.set_heights({1}), std::invalid_argument);
 }
 
-TEST_CASE("map: a mipmap's blocks, cut off by the border, hold means rounded to nearest, or maxima") {
+TEST_CASE("map: a mipmap's blocks, clipped at the border, hold means rounded to nearest, or maxima") {
     Map map(3, 2, AddressMode::clamp, AddressMode::repeat, {1, 2, 9, 4, 4, 6});
     map.make_mipmap(MipmapFilter::mean);
     using Levels = std::vector<std::vector<double>>;
@@ -183,7 +183,7 @@ TEST_CASE("map: a mipmap's blocks, cut off by the border, hold means rounded to 
     CHECK(map.mipmap() == Levels{{1, 2, 9, 4, 4, 6}, {4, 9}, {9}});
 }
 
-TEST_CASE("normal map: central differences, borders, thin axes") {
+TEST_CASE("normal map: normals are central differences, also at borders and on thin axes") {
     const double scale = 0.01, su = 0.5, sv = 0.25;
     const auto expected = [&](double du, double dv) {
         const glm::dvec3 n(-du, -dv, 1);
@@ -211,7 +211,7 @@ TEST_CASE("normal map: central differences, borders, thin axes") {
     }
 }
 
-TEST_CASE("bump: a flat normal map returns the normal, axes and handedness") {
+TEST_CASE("bump: a flat normal map returns the normal, others follow axes and handedness") {
     Random random;
     for (int k = 0; k < 1000; ++k) {
         const glm::dvec3 n = random.unit(), t = random.unit();
@@ -227,7 +227,7 @@ TEST_CASE("bump: a flat normal map returns the normal, axes and handedness") {
     CHECK(normalise({3, 0, 4}).length == 5);
 }
 
-TEST_CASE("vertex: displaced, inserted and transformed as ALGORITHM.md section 3 says") {
+TEST_CASE("vertex: displaced, inserted and transformed as in ALGORITHM.md section 3") {
     Map map(4, 4, AddressMode::clamp, AddressMode::clamp, {0, 0, 0, 0, 0, 0, 100, 0, 0, 0, 0, 0, 0, 0, 0, 300});
     Parameters p;
     p.scale = 0.5;

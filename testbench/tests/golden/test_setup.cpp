@@ -76,13 +76,13 @@ TEST_CASE("camera: the world's scale changes depths, not pixels") {
     CHECK(near(make_view(camera, placement).eye, {-4, -8, 8}));
 }
 
-TEST_CASE("unit vectors of any length") {
+TEST_CASE("unit vectors are made from vectors of any length") {
     CHECK(near(unit({3e-200, 0, 4e-200}), {0.6, 0, 0.8}));
     CHECK(near(unit({0, -3e200, 4e200}), {0, -0.6, 0.8}));
     CHECK(unit({0, 0, 0}) == glm::dvec3(0));
 }
 
-TEST_CASE("parameters: displacement in world units, thresholds in codes and cosines") {
+TEST_CASE("parameters: displacement is in world units, thresholds are in codes and cosines") {
     Scene scene;
     scene.camera = straight_down();
     scene.placement.scale = 8;
@@ -110,7 +110,7 @@ TEST_CASE("parameters: displacement in world units, thresholds in codes and cosi
     CHECK(p.texture_step == 0);
 }
 
-TEST_CASE("parameters: the Rank Test's thresholds in pixels, at distance 1") {
+TEST_CASE("parameters: the Rank Test's thresholds are in pixels at distance 1") {
     Scene scene;
     scene.camera = straight_down();  // 50 pixels are 1 high at distance 1; the tangent to a corner is the root of 5
     scene.placement.scale = 8;
@@ -135,7 +135,7 @@ TEST_CASE("parameters: the Rank Test's thresholds in pixels, at distance 1") {
     CHECK(make_parameters(scene).rank_threshold == -(1 << 20));
 }
 
-TEST_CASE("half vector and light as the viewer has them") {
+TEST_CASE("half vector and light are in the viewer's coordinates") {
     Scene scene;
     scene.camera = straight_down();
     scene.light = {5, 0, 0};
@@ -158,7 +158,7 @@ TEST_CASE("codes span the map's range and no more") {
     CHECK(code_of(2, 2, 2, 15) == 0);  // a constant map
 }
 
-TEST_CASE("base vertices: texels, held on a clamped map, on the grid") {
+TEST_CASE("base vertices: texture coordinates are in texels, clamped to the map and rounded to the grid") {
     const Map map(10, 20, AddressMode::clamp, AddressMode::repeat, std::vector<double>(200, 1));
     Vertex given;
     given.position = {1, 2, 4};
@@ -174,7 +174,7 @@ TEST_CASE("base vertices: texels, held on a clamped map, on the grid") {
     CHECK(on_grid({0.125, 0.375}, 0.25) == glm::dvec2(0, 0.5));  // ties: even
 }
 
-TEST_CASE("an inserted texture coordinate is rounded down to the grid, if there is one") {
+TEST_CASE("an inserted texture coordinate is rounded down to the grid, if any") {
     const Map map(10, 20, AddressMode::clamp, AddressMode::clamp, std::vector<double>(200, 1));
     Vertex i, j;
     i.texture = {1, 2.25};

@@ -115,7 +115,7 @@ TEST_CASE("subdivision: every pattern tiles the triangle and keeps its winding")
     }
 }
 
-TEST_CASE("subdivision: two edges split, the three choices of diagonal") {
+TEST_CASE("subdivision: with two split edges there are three choices of diagonal") {
     using Children = std::array<std::array<int, 3>, 4>;
     // For each unsplit edge: corner, then both cuts of the quadrilateral.
     const std::array<Children, 3> cut_first{{{{{5, 4, 2}, {0, 1, 4}, {0, 4, 5}}},
@@ -152,7 +152,7 @@ TEST_CASE("subdivision: two edges split, the three choices of diagonal") {
     }
 }
 
-TEST_CASE("half donut on the plane of 18: ends, no T-vertex, area kept") {
+TEST_CASE("half donut on the plane of 18: it ends, without T-vertices, with the same area") {
     const Map map = half_donut(0.55, 0.25);
     const std::vector<std::array<Vertex, 3>> base = plane_18();
     for (const Diagonal diagonal : {Diagonal::shorter, Diagonal::first, Diagonal::second}) {
@@ -193,7 +193,7 @@ TEST_CASE("half donut on the plane of 18: ends, no T-vertex, area kept") {
     }
 }
 
-TEST_CASE("the printed algorithm's endless case, and the generation test that ends it") {
+TEST_CASE("the printed algorithm's endless case ends with the Generation Test") {
     // ALGORITHM.md 4.5: the long edge never splits; the third vertex alternates between points one third along it.
     const Map map = half_donut(0.6, 0.25);
     Parameters p;
@@ -224,7 +224,7 @@ TEST_CASE("the printed algorithm's endless case, and the generation test that en
     }
 }
 
-TEST_CASE("tessellate: the bound is exact, nothing is lost, base triangles keep their order") {
+TEST_CASE("tessellate: the bound is exact, no triangle is lost, base triangles keep their order") {
     const Map map = half_donut(0.55, 0.25);
     Parameters p;
     p.normal_threshold = 0.3;
@@ -242,7 +242,7 @@ TEST_CASE("tessellate: the bound is exact, nothing is lost, base triangles keep 
     CHECK(tessellate({}, map, p, 0, note).triangles_emitted == 0);
 }
 
-TEST_CASE("cylinder: repeat closes the seam, clamp opens it") {
+TEST_CASE("cylinder: the seam is closed in repeat and open in clamp") {
     Random random;
     const int around = 8, up = 3, width = 64, height = 48;
     std::vector<std::array<Vertex, 3>> base;

@@ -83,7 +83,7 @@ TEST_CASE("deep nesting of every kind ends in a message") {
     CHECK_THAT(parse_error_of(many), Contains("and 49980 more"));
 }
 
-TEST_CASE("hostile pieces of TOML") {
+TEST_CASE("hostile pieces of TOML are a job or an InputError") {
     const std::vector<std::string> pieces{"\xef\xbb\xbf",
                                           "\xff\xfe[\0m",
                                           "=",
@@ -172,13 +172,13 @@ TEST_CASE("hostile pieces of TOML") {
     CHECK(parse_job("\xef\xbb\xbf[mesh]\r\nrows = 5\r\n", "bom.toml").mesh.rows == 5);
 }
 
-TEST_CASE("a dumped job cut at every byte") {
+TEST_CASE("a dumped job cut at every byte is a job or an InputError") {
     const std::string bare = bare_dump(Job{});
     for (std::size_t length = 0; length <= bare.size(); ++length)
         survives(bare.substr(0, length));
 }
 
-TEST_CASE("a dumped job with every byte changed") {
+TEST_CASE("a dumped job with every byte changed is a job or an InputError") {
     const std::string bare = bare_dump(Job{});
     REQUIRE(same_settings(parse_job(bare, "bare.toml"), Job{}));
     for (std::size_t i = 0; i < bare.size(); ++i) {
@@ -192,7 +192,7 @@ TEST_CASE("a dumped job with every byte changed") {
     }
 }
 
-TEST_CASE("characters beyond ASCII at every place") {
+TEST_CASE("characters beyond ASCII at every place are a job or an InputError") {
     const std::string bare = bare_dump(Job{}) + "# comment\n'a\"b' = 'c\"'\n\"d'\\\"\" = \"e'\\\\\"\n";
     for (const std::string character : {"\xc2\xa0", "\xc3\xa4", "\xe1\x9a\x80", "\xe2\x80\x83", "\xef\xbb\xbf",
                                         "\xe2\x80\xa8", "\xc2\x85", "\xf0\x9f\x98\x80", "\xff", "\xc3"})
@@ -203,7 +203,7 @@ TEST_CASE("characters beyond ASCII at every place") {
     CHECK(parse_job("map.text = \"\"\"\n\\\n \xc3\xa4\nb\"\"\"\n", "job.toml").map.text == "\xc3\xa4\nb");
 }
 
-TEST_CASE("no file can steer the terminal that its message is shown on") {
+TEST_CASE("error messages contain no control characters of a file") {
     CHECK_THAT(parse_error_of("a = f\x1b[31m\x07\n"), Contains("\\u001B[31m") || Contains("\\u001B"));
     for (const char c : parse_error_of("a = f\x1b[31m\x07\n"))
         CHECK(static_cast<unsigned char>(c) >= 0x20);

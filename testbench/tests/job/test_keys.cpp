@@ -155,7 +155,7 @@ TEST_CASE("every key reads, sets itself only, dumps and round-trips") {
     }
 }
 
-TEST_CASE("a preset sets its keys, and those beside it in the job are set alone, in any order") {
+TEST_CASE("a preset sets its keys, and keys given beside it override it, in any order") {
     const Job modern = parse_job("[hardware]\ndesign = 'modern'\n", "job.toml");
     CHECK(modern.hardware.work == Work::family);
     CHECK(modern.hardware.edge_lanes == 3);
@@ -192,7 +192,7 @@ TEST_CASE("a preset sets its keys, and those beside it in the job are set alone,
     }
 }
 
-TEST_CASE("what may be left to the program reads as auto, and is so by default") {
+TEST_CASE("keys with automatic values accept auto, and have it by default") {
     std::vector<std::string> automatic_keys;
     for (const Key& key : all_keys()) {
         INFO(key.name);
@@ -228,7 +228,7 @@ TEST_CASE("what may be left to the program reads as auto, and is so by default")
     CHECK(automatic_key(set).empty());
 }
 
-TEST_CASE("the map's range is full, data or two ends") {
+TEST_CASE("the map's range is full, data or two values") {
     CHECK(Job{}.map.range.kind == MapRange::Kind::full);
     CHECK(parse_job("map.range = \"data\"", "a").map.range.kind == MapRange::Kind::data);
     CHECK(parse_job("map.range = \"full\"", "a").map.range.kind == MapRange::Kind::full);
@@ -281,7 +281,7 @@ TEST_CASE("every choice reads and keeps its name") {
     CHECK(name_of(parse_job("map.source = \"ramp\"", "job.toml").map.source) == "ramp");
 }
 
-TEST_CASE("integers are accepted where numbers are wanted") {
+TEST_CASE("integers are accepted by keys that take numbers") {
     const Job job = parse_job("[displacement]\nscale = 2\n[camera]\neye = [1, -2, 3.5]\n", "job.toml");
     CHECK(job.displacement.scale == 2.0);
     CHECK(job.camera.eye == std::array<double, 3>{1, -2, 3.5});
@@ -316,7 +316,7 @@ TEST_CASE("random jobs round-trip") {
     });
 }
 
-TEST_CASE("settings of the command line") {
+TEST_CASE("settings of the command line set their keys or are refused") {
     Job job;
     apply_setting(job, "mesh.columns=7");
     apply_setting(job, " map.source = noise ");
@@ -365,7 +365,7 @@ TEST_CASE("settings of the command line") {
     CHECK(same_settings(job, before));
 }
 
-TEST_CASE("paths") {
+TEST_CASE("paths are resolved from the job's folder or the data folder") {
     Job job;
     job.folder = "jobs";
     const auto resolve = [&](const std::string& mesh, const std::string& map) {

@@ -114,7 +114,7 @@ TEST_CASE("every number's range holds at its ends and refuses beyond them") {
     CHECK_THAT(parse_error_of("formats.summed_height_bits = 7"), Contains("the range is 0 or 8 .. 48 bits"));
 }
 
-TEST_CASE("mistyped names are reported with place and suggestion") {
+TEST_CASE("mistyped names are reported with their position and a suggestion") {
     const std::string suggestion = "unknown key `mesh.colums`; did you mean `mesh.columns`?";
     expect_whole("[mesh]\nrows = 2\n\n  colums = 3\n", "job.toml:4:3: " + suggestion);
     expect_whole("mesh.colums = 3", "job.toml:1:6: " + suggestion);
@@ -141,7 +141,7 @@ TEST_CASE("mistyped names are reported with place and suggestion") {
     CHECK(nearest_name(std::string(100000, 'a'), {"mesh.file"}).empty());
 }
 
-TEST_CASE("values are reported with place, value and what is wanted") {
+TEST_CASE("wrong values are reported with their position, the value and the accepted values") {
     expect_whole("[mesh]\ncolumns = 99999\n",
                  "job.toml:2:1: `mesh.columns` = 99999 is out of range; the range is 0 .. 2048 quads");
     expect_whole("[mesh]\ncolumns = \"three\"\n",
@@ -176,7 +176,7 @@ TEST_CASE("TOML's own errors carry file, line and column") {
     CHECK_THAT(parse_error_of("[mesh]\nrows = \n"), Contains("not TOML"));
 }
 
-TEST_CASE("files that are no job files") {
+TEST_CASE("files that are not job files are refused") {
     const TestFolder folder;
     const auto read_error = [](const fs::path& path) { return input_error_of([&] { read_job(path); }); };
     CHECK_THAT(read_error(folder.path() / "none.toml"), Contains("none.toml: no such job file"));
@@ -199,7 +199,7 @@ TEST_CASE("files that are no job files") {
     CHECK_FALSE(read_error(fs::path(std::string(10000, 'x'))).empty());
 }
 
-TEST_CASE("keys that contradict each other") {
+TEST_CASE("keys that contradict each other are refused") {
     expect_refusals(
         {
             {"mesh.source=file", {"`mesh.file` is empty"}},
@@ -270,7 +270,7 @@ TEST_CASE("keys that contradict each other") {
     CHECK_THAT(validate_error_of(out_of_range), Contains("`formats.texture_integer` = 1000"));
 }
 
-TEST_CASE("validate survives random jobs") {
+TEST_CASE("validate accepts or refuses random jobs") {
     rc::prop("a verdict, nothing else", [] {
         Job job;
         for (const Key& key : all_keys())

@@ -42,7 +42,7 @@ struct Row {
 
 const CaseTable meshes("",
                        {
-                           Row{"half donut: the pipeline's mesh is the bare datapath's, bit for bit", ""},
+                           Row{"half donut: the pipeline's mesh equals the bare datapath's, bit for bit", ""},
                            {"half donut, last in first out: the same mesh", "hardware.queue_order=lifo"},
                            {"half donut, many host triangles at a time: the same mesh",
                             "hardware.queue_watermark=1000"},
@@ -90,7 +90,7 @@ TEST_CASE("half donut, every item through its packed form: the same mesh") {
     expect_sound(CheckedRun(setup));
 }
 
-TEST_CASE("reads through DMI and by transactions are counted alike") {
+TEST_CASE("reads through DMI and by transactions are counted equally") {
     const MachineSetup setup = functional_setup("hardware.direct_memory=false");
     Simulation simulation(setup, 1'000'000);
     run_to_the_end(simulation);
@@ -102,7 +102,7 @@ TEST_CASE("reads through DMI and by transactions are counted alike") {
     CHECK(p.displacement_map.transactions() == p.edges_tested() + 3 * setup.base_triangles.size());
 }
 
-TEST_CASE("half donut, culling: Lighting gets fewer, the mesh stays whole") {
+TEST_CASE("half donut, culling: Lighting gets fewer triangles, the mesh is complete") {
     const CheckedRun run(functional_setup("hardware.culling=back camera.eye=[0,-4,0.6]"));
     expect_sound(run);
     CHECK(run.counts.culled > 0);
@@ -230,7 +230,7 @@ TEST_CASE("a base triangle's View Test waits for its corners' screen positions")
     CHECK(sc_core::sc_time_stamp().value() == expected * setup.design.timing.cycle_picoseconds);
 }
 
-TEST_CASE("time joins at the later branch, also for what follows the join") {
+TEST_CASE("at a join time continues from the later branch") {
     MachineSetup setup = functional_setup(
         "mesh.columns=1 mesh.rows=1 map.source=noise tests.normal_threshold=0 tests.view_threshold=0 "
         "tests.generation_limit=1 timing.transform_latency=500");

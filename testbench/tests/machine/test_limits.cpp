@@ -59,25 +59,25 @@ const CaseTable designs(
              "hardware.tests_units=3 hardware.transform_pipelines=16 timing.results_buffer=1 "
              "timing.off_chip_buffer=1"},
         // edges do not wait for one another's reads: at least one edge's own
-        {"the Summed Height Table 1000 cycles away, the others at hand",
+        {"a Summed Height Table of latency 1000, other memories of latency 0",
          all_memories(0) + "timing.summed_height_table_latency=1000", 1000},
-        {"the displacement map 1000 cycles away, the others at hand",
+        {"a displacement map of latency 1000, other memories of latency 0",
          all_memories(0) + "timing.displacement_map_latency=1000", 1000},
-        {"the normal map 1000 cycles away, the others at hand", all_memories(0) + "timing.normal_map_latency=1000",
-         1000},
-        {"off-chip memory 1000 cycles away, a byte a cycle, one request at a time",
+        {"a normal map of latency 1000, other memories of latency 0",
+         all_memories(0) + "timing.normal_map_latency=1000", 1000},
+        {"off-chip memory of latency 1000, one byte per cycle, one request at a time",
          queue("fifo", 1) + "timing.off_chip_latency=1000 timing.off_chip_bandwidth=1 timing.off_chip_buffer=1"},
         {"every latency and interval 1", all_units(1, 1, 1) + all_memories(0) +
                                              "timing.summed_height_table_ports=64 timing.summed_height_table_banks=64"},
         // at least Transform: one part after another, 1000 cycles each
         {"every latency and interval 1000, stalls",
          "tests.generation_limit=2 " + all_units(1000, 1000, 1) + stalls(105, 200, 1000), 100'000},
-        {"narrow memories, one byte a cycle", every_table("width", 1)},
-        {"a clock whose period and latencies are the longest",
+        {"narrow memories, one byte per cycle", every_table("width", 1)},
+        {"the longest clock period and latencies",
          "tests.generation_limit=1 timing.clock_period=1000000000 " + all_units(1'000'000, 1'000'000, 1)},
         {"a map of one row", "map.source=noise map.width=64 map.height=1"},
         {"a map of one column", "map.source=noise map.width=1 map.height=64"},
-        {"an eye within the heights, on whose near plane edges end",
+        {"an eye within the heights, with edges that end on the near plane",
          "camera.eye=[0.01,0.02,0.1] camera.target=[1,0,0.1]"},
     },
     [](const Row& row) { expect_whole_run(row, true); });
@@ -86,22 +86,22 @@ const CaseTable whole("limits: ",
                       {
                           Row{"nothing to split, one place in the queue, stalls",
                               "map.source=constant " + queue("fifo", 1) + stalls(106, 1000, 100)},
-                          {"no test asks for a split", "tests.normal=false tests.summed_height=false"},
+                          {"no test requests a split", "tests.normal=false tests.summed_height=false"},
                           {"a generation limit of 0", "tests.generation_limit=0"},
                           {"a map of one texel", "map.width=1 map.height=1"},
                           {"a map of one texel, repeated",
                            "map.source=noise map.width=1 map.height=1 map.address_u=repeat map.address_v=repeat"},
-                          {"a viewport of one pixel splits nothing that the View Test measures in pixels",
+                          {"a viewport of one pixel, in which the View Test allows no split",
                            "camera.viewport_width=1 camera.viewport_height=1"},
-                          {"all of it behind the camera: no edge is seen, none splits",
+                          {"a mesh behind the camera, which splits no edge",
                            "camera.eye=[0,-3,0.5] camera.target=[0,-6,0.5]"},
-                          {"all of it beyond the near plane's reach: likewise", "camera.near_plane=1e6"},
+                          {"a mesh nearer than the near plane, which splits no edge", "camera.near_plane=1e6"},
                       },
                       [](const Row& row) { expect_whole_run(row, false); });
 
 }  // namespace
 
-TEST_CASE("limits: all of it seen from behind and culled: nothing is lit, the mesh is whole") {
+TEST_CASE("limits: a mesh seen from behind is culled: nothing is lit, the mesh is complete") {
     const CheckedRun run(
         with_settings(timed_job(), "map.source=constant camera.eye=[0,-3.2,-2.4] hardware.culling=back"));
     CHECK(run.counts.edges_split == 0);

@@ -78,8 +78,8 @@ const CaseTable meshes("formats: ",
                             narrowest + "formats.texture_integer=6"},
                            {"the widest, a plane, functional", "functional", plane, widest},
                            {"the widest, a cylinder in repeat that spills, timed", "timed", cylinder, widest},
-                           {"odd ones, a plane, functional", "functional", plane, odd},
-                           {"odd ones, a cylinder in repeat that spills, timed", "timed", cylinder, odd},
+                           {"odd bit counts, a plane, functional", "functional", plane, odd},
+                           {"odd bit counts, a cylinder in repeat that spills, timed", "timed", cylinder, odd},
                            {"whole numbers, a cylinder in repeat that spills, timed", "timed", cylinder, whole_numbers},
                            {"fractions only, a plane, timed", "timed", plane, fractions},
                        },
@@ -102,7 +102,7 @@ const CaseTable meshes("formats: ",
 
 }  // namespace
 
-TEST_CASE("formats: what an intermediate of the datapath cannot hold is refused with its name") {
+TEST_CASE("formats: a format too wide for an intermediate of the datapath is refused with its name") {
     Job job;
     const BaseMesh mesh = load_mesh(job);
     const HeightMap map = load_map(job);
@@ -119,7 +119,7 @@ TEST_CASE("formats: what an intermediate of the datapath cannot hold is refused 
 }
 
 // 5 integer bits hold texels up to 32; the registers of the map's size have one bit more.
-TEST_CASE("formats: a map larger than its registers hold is refused, even where no texture coordinate is") {
+TEST_CASE("formats: a map too large for its registers is refused, even if no texture coordinate is") {
     Job job;
     job.formats.texture_integer = 5;
     BaseMesh mesh = load_mesh(job);
@@ -138,7 +138,7 @@ TEST_CASE("formats: a map larger than its registers hold is refused, even where 
     refused(63, 64, "height");
 }
 
-TEST_CASE("formats: any that a job may have, on any small job: within the bounds, and closed") {
+TEST_CASE("formats: random formats on small random jobs stay within the bounds and without cracks") {
     Random random(20);
     int ran = 0, refused = 0;
     for (int k = 0; k < 150; ++k) {

@@ -120,7 +120,7 @@ TEST_CASE("limits: every number of a job, at and beyond its range, is refused by
     CHECK(ran > 100);
 }
 
-TEST_CASE("limits: cameras that see nothing sensible are refused with both keys' names") {
+TEST_CASE("limits: cameras without a valid view are refused with the names of both keys") {
     expect_refusals(
         {
             {"camera.eye=[1,2,3] camera.target=[1,2,3]", {"`camera.eye`", "`camera.target`", "same point"}},
@@ -133,7 +133,7 @@ TEST_CASE("limits: cameras that see nothing sensible are refused with both keys'
         [](const std::string& settings) { return outcome_of(with_settings(small_job(), settings)); });
 }
 
-TEST_CASE("limits: a near plane that is not in front and angles that are none are out of range") {
+TEST_CASE("limits: a near plane that is not in front and invalid angles are out of range") {
     expect_refusals(
         {
             {"camera.near_plane=0", {"camera.near_plane", "range"}},

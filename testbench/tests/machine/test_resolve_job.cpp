@@ -77,7 +77,7 @@ std::vector<glm::dvec3> corners(const glm::dvec3& low, const glm::dvec3& high) {
 
 }  // namespace
 
-TEST_CASE("the scale is an eighth of a flat mesh's largest extent, and a fortieth of another's") {
+TEST_CASE("the scale is an eighth of a flat mesh's largest extent, and a fortieth of any other mesh's") {
     const auto scale_of = [](const BaseMesh& mesh, const HeightMap& map, const Job& job) {
         return resolve_job(job, mesh, map).job.displacement.scale;
     };
@@ -97,7 +97,7 @@ TEST_CASE("the scale is an eighth of a flat mesh's largest extent, and a fortiet
     CHECK(scale_of(make_plane(3, 3, 2, 2), map, job) == -3);
 }
 
-TEST_CASE("up is z, but y for an OBJ file, and a flat one's axis on the side of its normals") {
+TEST_CASE("up is z, but y for an OBJ file, and for a flat one its axis on the side of its normals") {
     const HeightMap map = map_of(0, 1);
     const auto up_of = [&](const BaseMesh& mesh, MeshSource source) {
         Job job;
@@ -118,10 +118,10 @@ TEST_CASE("up is z, but y for an OBJ file, and a flat one's axis on the side of 
     CHECK(up_of(of_a_run, MeshSource::run) == Up{0, -1, 0});
 }
 
-TEST_CASE("the camera looks at the displaced box from the right of the front, and one corner touches nine tenths") {
+TEST_CASE("the camera looks at the displaced box from the right of the front, and the box fills nine tenths") {
     const double right = std::sin(20 * pi / 180) * std::cos(38 * pi / 180),
                  front = std::cos(20 * pi / 180) * std::cos(38 * pi / 180), above = std::sin(38 * pi / 180);
-    SECTION("where z is up, the front is -y") {
+    SECTION("with z up, the front is -y") {
         Job job;
         job.displacement.bias = 0.5;
         const ResolvedJob resolved = resolve_job(job, make_plane(3, 3, 2, 2), map_of(0, 1));
@@ -138,7 +138,7 @@ TEST_CASE("the camera looks at the displaced box from the right of the front, an
         CHECK(resolved.found[0].value == "0.25");
         CHECK_THAT(resolved.found[0].rule, Contains("flat: an eighth of the base mesh's largest extent, 2"));
     }
-    SECTION("where y is up, it is z") {
+    SECTION("with y up, the front is z") {
         Job job = file_job();
         job.displacement.scale = 0;
         job.camera.viewport_width = 300;
@@ -160,7 +160,7 @@ TEST_CASE("the camera looks at the displaced box from the right of the front, an
         job.frames.count = 1;  // first_scale is not used
         CHECK(resolve_job(job, make_plane(3, 3, 2, 2), map_of(0, 1)).job.camera.target[2] == 0.5);
     }
-    SECTION("whatever the model's size") {
+    SECTION("for any size of the model") {
         for (const double size : {1e-5, 1e-3, 1.0, 1e5, 1e9}) {
             const Job::Camera camera = resolve_job(Job{}, make_sphere(8, 4, size), map_of(0, 0)).job.camera;
             CHECK(filled_part(camera, corners(glm::dvec3(-size), glm::dvec3(size))) == Approx(0.9).epsilon(2e-5));
@@ -168,7 +168,7 @@ TEST_CASE("the camera looks at the displaced box from the right of the front, an
     }
 }
 
-TEST_CASE("what is set of a camera stays, and the rest follows from it") {
+TEST_CASE("camera keys that are set are kept, and the others are derived from them") {
     const BaseMesh plane = make_plane(3, 3, 2, 2);
     const HeightMap map = map_of(0, 1);
     Job job;
@@ -197,7 +197,7 @@ TEST_CASE("what is set of a camera stays, and the rest follows from it") {
     CHECK(automatic_key(resolved.job).empty());
 }
 
-TEST_CASE("a model beyond what a camera can be set to is refused with what to do") {
+TEST_CASE("a model beyond the range of the camera keys is refused with a remedy") {
     const auto refusal = [](const BaseMesh& mesh) {
         return testing::input_error_of([&] { resolve_job(Job{}, mesh, map_of(0, 1)); });
     };
@@ -209,7 +209,7 @@ TEST_CASE("a model beyond what a camera can be set to is refused with what to do
                                                     "-3e+13, 6); move the mesh to the origin"));
 }
 
-TEST_CASE("set-up and golden model refuse a job that is not resolved: a mistake of the program") {
+TEST_CASE("setup and golden model refuse a job that is not resolved as a program error") {
     const BaseMesh plane = make_plane(3, 3, 2, 2);
     const HeightMap map = half_donut_map(8, 8);
     Job job = resolve_job({}, plane, map).job;

@@ -75,7 +75,7 @@ MachineSetup setup_of(double scale) {
 
 }  // namespace
 
-TEST_CASE("a run's mesh as a base: displaced vertices, shared, complete") {
+TEST_CASE("a run's mesh as a base mesh has displaced vertices, shared and complete") {
     const BaseMesh mesh = read_back(
         {triangle(corner(0, 0), corner(4, 0), corner(4, 4)), triangle(corner(0, 0), corner(4, 4), corner(0, 4))});
     REQUIRE(mesh.vertices.size() == 4);
@@ -91,7 +91,7 @@ TEST_CASE("a run's mesh as a base: displaced vertices, shared, complete") {
     CHECK(mesh.texture_scale.mean_u == 4);
 }
 
-TEST_CASE("texture coordinates keep every bit, whatever the map's size") {
+TEST_CASE("texture coordinates keep every bit for any map size") {
     // as a float, 2999 + 1/4096 of 3000 texels is a third of a step off: sides of a seam would round differently
     Corner fine = corner(4, 4);
     fine.texture = {2999 * texel + 1, 1001 * texel + 4095};
@@ -101,7 +101,7 @@ TEST_CASE("texture coordinates keep every bit, whatever the map's size") {
     CHECK(std::abs(steps.y - fine.texture.v) < 1e-6);
 }
 
-TEST_CASE("vertices of a run that only their base position tells apart become one, and triangles so collapsed go") {
+TEST_CASE("vertices of a run that differ in base position only are merged, and collapsed triangles are dropped") {
     // Corner (4, 0) came from two places; the triangle between them has no edge left that a neighbour needs.
     const BaseMesh mesh = read_back({triangle(corner(0, 0), corner(4, 0), corner(4, 4)),
                                      triangle(corner(4, 0), corner(4, 0, 7), corner(4, 4)),
@@ -112,7 +112,7 @@ TEST_CASE("vertices of a run that only their base position tells apart become on
     CHECK(repaired(mesh, "1 triangle(s) of the run"));
 }
 
-TEST_CASE("a triangle without area that holds a T-vertex's place stays") {
+TEST_CASE("a triangle without area that closes a T-vertex is kept") {
     // (2, 0) lies on the edge from (0, 0) to (4, 0): unsplit on one side, split on the other, with the flat triangle
     // between.
     const BaseMesh mesh = read_back(
@@ -124,7 +124,7 @@ TEST_CASE("a triangle without area that holds a T-vertex's place stays") {
         CHECK(vertex.tangent == glm::dvec3(1, 0, 0));
 }
 
-TEST_CASE("normals that the run had not, and triangles it culled, are said") {
+TEST_CASE("normals missing from the run and triangles it culled are reported") {
     Corner bare = corner(4, 4);
     bare.displaced_normal = {0, 0, 0};
     EmittedTriangle culled = triangle(corner(0, 0), corner(4, 4), corner(0, 4));
@@ -154,7 +154,7 @@ TEST_CASE("up is the run's camera.up if its mesh was a file or a run, else z") {
     CHECK(up_of(MeshSource::patches) == glm::dvec3(0, 0, 1));
 }
 
-TEST_CASE("frame k of n: its scale, its folder, and nothing else") {
+TEST_CASE("frame k of n differs in its scale and folder only") {
     Job job;
     job.displacement.scale = 0.3;
     job.displacement.bias = -0.1;
@@ -177,7 +177,7 @@ TEST_CASE("frame k of n: its scale, its folder, and nothing else") {
     CHECK_FALSE(is_frame_name("frames"));
 }
 
-TEST_CASE("another scale: what the host sends again is the normal map, S and the base mesh") {
+TEST_CASE("another scale: the host sends the normal map, S and the base mesh again") {
     const MachineSetup low = setup_of(0.2), high = setup_of(0.25);
     REQUIRE(low.model_scale.scale == high.model_scale.scale);
     // the reason: nothing else in the machine depends on S
@@ -203,7 +203,7 @@ TEST_CASE("another scale: what the host sends again is the normal map, S and the
     CHECK(next_frame_traffic(low, low).total() == first.base_mesh);
 }
 
-TEST_CASE("the point of w and the Highlight Test's values are registers that the host sends") {
+TEST_CASE("the host sends the binary point of w and the Highlight Test's values as registers") {
     const MachineSetup before = setup_of(0.2);
     MachineSetup now = before;
     --now.registers.formats.view_distance.fraction;
@@ -216,7 +216,7 @@ TEST_CASE("the point of w and the Highlight Test's values are registers that the
     CHECK(register_words(now.registers).size() == 48 + 6);  // the cosine has 34 bits
 }
 
-TEST_CASE("a scale that makes the model's own change sends Transform's matrix again") {
+TEST_CASE("a scale that changes the model scale sends Transform's matrix again") {
     const MachineSetup low = setup_of(0.2), high = setup_of(5);
     REQUIRE(low.model_scale.scale != high.model_scale.scale);
     const HostTraffic later = next_frame_traffic(low, high);

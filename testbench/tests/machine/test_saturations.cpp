@@ -62,7 +62,7 @@ void for_each_displaced(const TrianglePass& pass, Look&& look) {
 
 }  // namespace
 
-TEST_CASE("saturations: the default job has none, of any quantity") {
+TEST_CASE("saturations: the default job has none in any quantity") {
     const MachineSetup setup = setup_of(timed_job());
     Simulation simulation(setup, 1'000'000, 100'000);
     REQUIRE(simulation.run().empty());
@@ -76,7 +76,7 @@ TEST_CASE("saturations: the default job has none, of any quantity") {
     CHECK(saturation_warnings(figures).empty());
 }
 
-TEST_CASE("saturations: displaced positions, as 128 bit integers count them") {
+TEST_CASE("saturations: displaced positions are counted as with 128-bit integers") {
     MachineSetup setup = setup_of(small_job());
     datapath::Registers& r = setup.registers;
     r.displacement.bias = static_cast<std::int32_t>(r.formats.position.highest / 5 * 4);
@@ -104,7 +104,7 @@ TEST_CASE("saturations: displaced positions, as 128 bit integers count them") {
     CHECK(wrong == 0);
 }
 
-TEST_CASE("saturations: screen positions, as a division in doubles counts them") {
+TEST_CASE("saturations: screen positions are counted as with a division in doubles") {
     const MachineSetup setup =
         setup_of(small_job("formats.screen_bits=13 formats.screen_fraction=2 camera.eye=[0.2,-0.5,0.4]"));
     const datapath::TransformParameters& transform = setup.registers.transform;
@@ -137,7 +137,7 @@ TEST_CASE("saturations: screen positions, as a division in doubles counts them")
     CHECK_THAT(warnings[0], Catch::StartsWith("screen position: ") && Catch::Contains("formats.screen_bits"));
 }
 
-TEST_CASE("saturations: view distances, as 128 bit integers count them") {
+TEST_CASE("saturations: view distances are counted as with 128-bit integers") {
     MachineSetup setup = setup_of(small_job());
     datapath::Format& format = setup.registers.formats.view_distance;
     format.fraction += 6;  // more than the host would choose
@@ -156,7 +156,7 @@ TEST_CASE("saturations: view distances, as 128 bit integers count them") {
 }
 
 // The host's normals have two integer bits, so that 1.0 fits: only a format with one saturates.
-TEST_CASE("saturations: normals of one integer bit, where a plane's own do not fit") {
+TEST_CASE("saturations: normals beyond a format of one integer bit are counted") {
     MachineSetup setup = setup_of(small_job("map.source=constant"));
     datapath::Formats& formats = setup.registers.formats;
     formats.normal = datapath::Format::make_signed(16, 15);
@@ -177,7 +177,7 @@ TEST_CASE("saturations: normals of one integer bit, where a plane's own do not f
     CHECK(counted.screen_normal == 3 * base);
 }
 
-TEST_CASE("saturations: opposite normals leave zero vectors, counted") {
+TEST_CASE("saturations: zero vectors from opposite normals are counted") {
     MachineSetup setup = setup_of(small_job());
     for (datapath::Triangle& triangle : setup.base_triangles) {
         datapath::Direction& n = triangle.vertices[1].normal;
@@ -206,7 +206,7 @@ TEST_CASE("saturations: opposite normals leave zero vectors, counted") {
     CHECK(counted.degenerate_normal == expected);
 }
 
-TEST_CASE("saturations: generations beyond their field, with the Generation Test off") {
+TEST_CASE("saturations: generations beyond their field are counted, with the Generation Test off") {
     // spilled triangles are packed: their values fit their fields
     const MachineSetup setup =
         setup_of(with_settings(full_split_job(1, 3),
@@ -234,7 +234,7 @@ TEST_CASE("saturations: generations beyond their field, with the Generation Test
     expect_mesh(simulation.monitor.mesh, bare.mesh);
 }
 
-TEST_CASE("saturations: vertices that face the light fully") {
+TEST_CASE("saturations: vertices that fully face the light are counted") {
     const MachineSetup setup = setup_of(with_settings(
         timed_job(), "map.source=constant camera.eye=[0,-3,0] camera.target=[0,0,0] hardware.light=[0,0,1]"));
     Simulation simulation(setup, 1'000'000, 100'000);
@@ -251,14 +251,14 @@ TEST_CASE("saturations: vertices that face the light fully") {
                Catch::Contains("intensity: 54 values saturated") && Catch::Contains("no key widens Lighting's 8 bits"));
 }
 
-TEST_CASE("saturations: each says what to widen, what it means, or is remarked on by the setup") {
+TEST_CASE("saturations: each has a remedy, a meaning or a remark of the setup") {
     for (const SaturationFigure& figure : saturation_figures(setup_of(small_job()), {})) {
         INFO(figure.name);
         CHECK((figure.remedy != nullptr || figure.meaning != nullptr) == (figure.name != std::string("input_texture")));
     }
 }
 
-TEST_CASE("saturations: texture coordinates beyond a map that clamps are counted, and the setup remarks on them") {
+TEST_CASE("saturations: texture coordinates beyond a clamped map are counted, with a remark of the setup") {
     const Job job = small_job();
     BaseMesh mesh = load_mesh(job);
     mesh.vertices.front().texture.x = -0.25;
@@ -272,7 +272,7 @@ TEST_CASE("saturations: texture coordinates beyond a map that clamps are counted
     CHECK_THAT(setup.remarks[0], Catch::Contains("set to the map's border") && Catch::Contains("map.address_u"));
 }
 
-TEST_CASE("saturations: what the host rounds is counted too") {
+TEST_CASE("saturations: values that the host saturates are counted too") {
     // S is twice the range of a one-bit map: 2^(bits - 1), one LSB more than its register holds
     const MachineSetup setup =
         setup_of(small_job("formats.displacement_bits=1 tests.summed_height_threshold=2 displacement.scale=1 "
@@ -285,7 +285,7 @@ TEST_CASE("saturations: what the host rounds is counted too") {
     CHECK_THAT(warnings[0], Catch::Contains("input register") && Catch::Contains("formats.position_bits"));
 }
 
-TEST_CASE("a threshold that its register cannot tell from 0 is refused with the register's step") {
+TEST_CASE("a threshold that its register rounds to 0 is refused with the register's step") {
     const auto error_of = [](const std::string& settings) {
         return input_error_of([&] { setup_of(with_settings({}, settings)); });
     };

@@ -76,7 +76,7 @@ const CaseTable meshes(
         {"tests switched off", small, "tests.summed_height=false tests.view=false " + stalls(12, 200)},
 
         {"a queue large enough never overflows", small, queue("lifo", 64) + "hardware.queue_overflow=error"},
-        {"the watermark lets host triangles in while fewer wait", small, "hardware.queue_watermark=40"},
+        {"the watermark admits host triangles while fewer wait", small, "hardware.queue_watermark=40"},
     },
     [](const TimedMesh& row) {
         const CheckedRun run(with_settings(timed_job(), row.job + row.settings));
@@ -139,7 +139,7 @@ TEST_CASE("timed mesh: culling") {
 
 // Each split adds three triangles to the queue, net, along one path of at most 12 generations; some more passes, and
 // their children, are in flight.
-TEST_CASE("timed mesh: last in first out, 64 places are enough: nothing is spilled") {
+TEST_CASE("timed mesh: last in first out, 64 places: nothing is spilled") {
     const CheckedRun run(with_settings(timed_job(), small + queue("lifo", 64)));
     CHECK(run.pipeline.triangle_queue.spilled() == 0);
     CHECK(run.pipeline.triangle_queue.high_water_mark() <= 64);
@@ -147,7 +147,7 @@ TEST_CASE("timed mesh: last in first out, 64 places are enough: nothing is spill
 }
 
 // The same counts as without stalls; only the time differs.
-TEST_CASE("timed mesh: stalls cost cycles and nothing else") {
+TEST_CASE("timed mesh: stalls change the number of cycles and nothing else") {
     const CheckedRun run(with_settings(timed_job(), small + stalls(31, 300)));
     CHECK(run.pipeline.height_table.transactions() == 12 * run.pipeline.edges_tested());
     CHECK(run.simulation.cycles() > 36 * run.counts.passes + 17);

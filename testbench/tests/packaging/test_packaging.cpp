@@ -115,7 +115,7 @@ std::vector<std::string> code_in(const fs::path& markdown, const std::string& la
 
 }  // namespace
 
-TEST_CASE("the example finds an installation that was moved, by CMake and by pkg-config") {
+TEST_CASE("the example finds a moved installation, by CMake and by pkg-config") {
     const TestFolder folder;
     const fs::path moved = install_in(folder.path());
     fs::copy(example, folder.path() / "example");
@@ -139,7 +139,7 @@ TEST_CASE("the example finds an installation that was moved, by CMake and by pkg
     }
 }
 
-TEST_CASE("the example takes the sources as a folder, and by FetchContent") {
+TEST_CASE("the example builds with the sources as a folder, and by FetchContent") {
     const TestFolder folder;
     const Arguments settings =
         with_glm_and_fmt + Arguments{"-DCMAKE_CXX_FLAGS=" + strict, "-DTESSERA_SOURCE=" + source_folder().string(),
@@ -156,7 +156,7 @@ TEST_CASE("the example takes the sources as a folder, and by FetchContent") {
 }
 
 // Runs every command of the page in order; in both modes the processor's program receives the same pictures.
-TEST_CASE("the first platform, as its page has it built") {
+TEST_CASE("the first platform builds and runs as in its README") {
     const TestFolder home;
     const std::vector<std::string> commands = code_in(platform / "README.md", "sh");
     CHECK(commands.size() == 7);
@@ -232,7 +232,7 @@ TEST_CASE("each installed header compiles alone") {
                     folder.path());
 }
 
-TEST_CASE("a component that is not there, a package it needs, another C++ standard: refused with the reason") {
+TEST_CASE("a missing component, a missing package and another C++ standard are refused with the reason") {
     const TestFolder folder;
     const fs::path moved = install_in(folder.path());
     const auto client = [&](const std::string& components, const Arguments& settings = {}) {
@@ -257,7 +257,7 @@ TEST_CASE("a component that is not there, a package it needs, another C++ standa
     }
 }
 
-TEST_CASE("what is left out of an installation is named with its reason") {
+TEST_CASE("components left out of an installation are named with the reason") {
     const TestFolder folder;
     require_success(configuring(source_folder(), Arguments{"-DTESSERA_TESTBENCH=OFF"} + no_systemc_package),
                     folder.path(), no_systemc);
@@ -288,7 +288,7 @@ TEST_CASE("the version is the same everywhere") {
                Contains("\nversion: " + std::string(version) + "\n"));
 }
 
-TEST_CASE("the README's CMake is the example's") {
+TEST_CASE("the README's CMake code is the example's") {
     const std::string cmake = read_all(example / "CMakeLists.txt");
     const std::vector<std::string> shown = code_in(source_folder() / "modules/README.md", "cmake");
     CHECK(shown.size() >= 5);

@@ -72,7 +72,7 @@ std::string refusal(const TestFolder& here, const std::string& bytes) {
 
 }  // namespace
 
-TEST_CASE("a mesh that was written is read back") {
+TEST_CASE("a written mesh is read back") {
     const TestFolder here;
     const EmittedMesh mesh = small_mesh();
     write_ply(here / "mesh.ply", mesh, units());
@@ -100,7 +100,7 @@ TEST_CASE("a mesh that was written is read back") {
     CHECK(read_ply(here / "mesh.ply").triangles.empty());
 }
 
-TEST_CASE("a mesh file cut off anywhere, or longer than it says, is refused") {
+TEST_CASE("a mesh file cut off anywhere, or longer than in its header, is refused") {
     const TestFolder here;
     write_ply(here / "mesh.ply", small_mesh(), units());
     const std::string whole = read_all(here / "mesh.ply");
@@ -112,7 +112,7 @@ TEST_CASE("a mesh file cut off anywhere, or longer than it says, is refused") {
     CHECK_THAT(refusal(here, whole + '\0'), Contains("bytes after its header"));
 }
 
-TEST_CASE("any byte of a mesh file changed is refused or read, and a header's own is refused") {
+TEST_CASE("a mesh file with one byte changed is refused or read, in its header it is refused") {
     const TestFolder here;
     write_ply(here / "mesh.ply", small_mesh(), units());
     const std::string whole = read_all(here / "mesh.ply");
@@ -131,7 +131,7 @@ TEST_CASE("any byte of a mesh file changed is refused or read, and a header's ow
     }
 }
 
-TEST_CASE("a mesh file that says something else is refused with what it says") {
+TEST_CASE("a mesh file with other contents in its header is refused with these contents") {
     const TestFolder here;
     write_ply(here / "mesh.ply", small_mesh(), units());
     const std::string whole = read_all(here / "mesh.ply");
@@ -174,7 +174,7 @@ TEST_CASE("a mesh file that says something else is refused with what it says") {
     CHECK_THROWS_AS(read_ply(here / "absent.ply"), InputError);
 }
 
-TEST_CASE("a run's folder is read back, with paths that hold from there") {
+TEST_CASE("a run's folder is read back, with resolved paths") {
     const TestFolder here;
     const fs::path run = here / "runs/one";
     fs::create_directories(run);

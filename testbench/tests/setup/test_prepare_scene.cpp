@@ -100,7 +100,7 @@ TEST_CASE("a scene of plain structs gives the registers, tables and triangles of
     }
 }
 
-TEST_CASE("a scene that cannot be is refused, with the value and what to do") {
+TEST_CASE("an invalid scene is refused with the value and a remedy") {
     struct Case {
         const char* text;
         std::function<void(Scene&)> spoil;

@@ -90,7 +90,7 @@ TEST_CASE("half donut with a Highlight Test, 1024 texels") {
     expect_conformance(with_highlight(Job{}), half_donut_map(1024, 1024));
 }
 
-TEST_CASE("noise, eye among the heights") {
+TEST_CASE("noise, with the eye within the heights") {
     Job job;
     job.camera.eye = {0, -0.3, 0.3};
     job.camera.target = {0, 1, 0.2};

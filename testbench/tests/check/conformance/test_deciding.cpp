@@ -114,7 +114,7 @@ TEST_CASE("deciding: the Summed Height Test alone") {
     expect_stopped(counts, 0, 0, 24, 0);
 }
 
-TEST_CASE("deciding: both, so that neither decides alone") {
+TEST_CASE("deciding: with both tests on, neither decides alone") {
     const auto counts = counts_of(one_quad());
     expect_split(counts, 0, 0, 6);
     expect_stopped(counts, 0, 0, 24, 0);
@@ -149,7 +149,7 @@ TEST_CASE("deciding: the Tex Coord Test alone stops all 96 edges of quads of one
     expect_stopped(counts, 0, 96, 0, 0);
 }
 
-TEST_CASE("deciding: the counters are those of the golden model's evaluations") {
+TEST_CASE("deciding: the counters agree with the golden model's evaluations") {
     Job job;
     job.mode = Mode::functional;
     job.map.width = job.map.height = 96;
@@ -207,7 +207,7 @@ TEST_CASE("texel borders: edges with an end or a midpoint one LSB below a border
     CHECK(borders.count().below == 1);
 }
 
-TEST_CASE("texel borders: many are more than a hundredth and twice what chance gives") {
+TEST_CASE("texel borders: the limit is one per cent of the edges and twice the rate by chance") {
     CHECK_FALSE(TexelBorderCount{12, 0, 0}.many());
     CHECK_FALSE(TexelBorderCount{12, 1000, 10}.many());
     CHECK(TexelBorderCount{12, 1000, 11}.many());
@@ -216,7 +216,7 @@ TEST_CASE("texel borders: many are more than a hundredth and twice what chance g
     CHECK(TexelBorderCount{6, 1000, 188}.many());
 }
 
-TEST_CASE("texel borders: the warning names the next map size and number of quads without") {
+TEST_CASE("texel borders: the warning names the next map size and number of quads that avoid them") {
     const TexelBorderCount few{12, 1000, 10}, many{12, 1000, 148};
     Job job;
     CHECK(texel_borders_warning(few, job, 256, 256).empty());

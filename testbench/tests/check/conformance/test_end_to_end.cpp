@@ -38,7 +38,7 @@ Case donut(const Job& job, int texels) {
 
 }  // namespace
 
-TEST_CASE("the closest point of a triangle, by region") {
+TEST_CASE("the closest point of a triangle is correct in each region") {
     const std::array<glm::dvec3, 3> t = {glm::dvec3(0, 0, 0), glm::dvec3(4, 0, 0), glm::dvec3(0, 4, 0)};
     const auto same = [](const glm::dvec3& a, const glm::dvec3& b) { return glm::length(a - b) < 1e-12; };
     CHECK(same(closest_point(t, {1, 1, 3}), {1, 1, 0}));
@@ -55,7 +55,7 @@ TEST_CASE("the closest point of a triangle, by region") {
     CHECK(same(closest_point({b, b, b}, {5, 5, 5}), b));
 }
 
-TEST_CASE("the closest point of a needle is that of a search along it") {
+TEST_CASE("the closest point of a needle triangle equals that found by a search along it") {
     Random random(23);
     // The distance to the segment across at t is convex in t, so ternary search finds the minimum.
     const auto search = [](const std::array<glm::dvec3, 3>& t, const glm::dvec3& p) {
@@ -95,7 +95,7 @@ TEST_CASE("the closest point of a needle is that of a search along it") {
     }
 }
 
-TEST_CASE("distances through the tree of boxes are those of a search through all triangles") {
+TEST_CASE("distances through the tree of boxes equal those of a search through all triangles") {
     Random random(21);
     // A large offset costs single precision; the distances must not change.
     for (const double offset : {0.0, 1e4, 1e6}) {
@@ -131,7 +131,7 @@ TEST_CASE("distances through the tree of boxes are those of a search through all
     CHECK(std::isinf(distance_between(std::vector{random_triangle(random, 1)}, {}).max));
 }
 
-TEST_CASE("triangles that meet store their common vertices once, in the order of their first use") {
+TEST_CASE("adjacent triangles share stored vertices, in order of first use") {
     const glm::dvec3 a(0, 0, 0), b(1, 0, 0), c(0, 1, 0), d(1, 1, 0);
     const std::vector<TriangleSoup::Corners> triangles{{c, a, b}, {c, b, d}};
     const TriangleSoup soup(triangles);
@@ -142,7 +142,7 @@ TEST_CASE("triangles that meet store their common vertices once, in the order of
     CHECK(distance_between(soup, soup).points == 6);
 }
 
-TEST_CASE("the tree of boxes visits each box within the radius once, and none that is empty") {
+TEST_CASE("the tree of boxes visits each box within the radius once, and no empty box") {
     Random random(24);
     for (const std::size_t count : {0U, 1U, 4U, 5U, 16U, 17U, 1000U})
         for (const double size : {1.0, 1e-6, 0.0})
@@ -178,7 +178,7 @@ TEST_CASE("the tree of boxes visits each box within the radius once, and none th
             }
 }
 
-TEST_CASE("distances to long thin triangles, and to such without an area, are those of a search through all") {
+TEST_CASE("distances to long thin triangles and to triangles without area equal those of a search through all") {
     Random random(22);
     const auto needle = [&](double width) {
         const glm::dvec3 at(real(random, -1, 1), real(random, -1, 1), real(random, -1, 1));
@@ -211,7 +211,7 @@ TEST_CASE("distances to long thin triangles, and to such without an area, are th
     }
 }
 
-TEST_CASE("a sample of the points says how many it is, and what that tells of the rest") {
+TEST_CASE("a sample of the points reports its size and bounds the part not measured") {
     // Two points miss a fraction q with probability (1 - q)^2, which is 1/4 for q = 1/2.
     CHECK(SurfaceDistance{10, 2, 0, 0}.unseen(0.75) == Approx(0.5));
     CHECK(SurfaceDistance{10'000'000, 6904, 0, 0}.unseen(0.999) == Approx(0.0010000).epsilon(1e-4));
@@ -242,7 +242,7 @@ TEST_CASE("a sample of the points says how many it is, and what that tells of th
     }
 }
 
-TEST_CASE("a surface shifted by a known distance is measured as that") {
+TEST_CASE("a surface shifted by a known distance is measured at that distance") {
     Case c = donut(Job{}, 64);
     const EmittedMesh mesh = hardware_mesh(c);
     std::vector<TriangleSoup::Corners> one, other;
@@ -268,7 +268,7 @@ TEST_CASE("a surface shifted by a known distance is measured as that") {
     CHECK(half.farther_percent() < 50);  // vertices along the border are near the other half
 }
 
-TEST_CASE("hardware and golden run to nearly the same surface") {
+TEST_CASE("hardware and golden model produce nearly the same surface") {
     Job job;
     job.tests.normal_threshold = 0.2;
     // 96 texels in three columns: base texture coordinates are whole, so midpoints are exact in both models for twelve
@@ -293,7 +293,7 @@ TEST_CASE("hardware and golden run to nearly the same surface") {
     CHECK(again.golden_to_hardware.rms_world == result.golden_to_hardware.rms_world);
 }
 
-TEST_CASE("a displacement off by one part in a thousand shows in the distance") {
+TEST_CASE("a displacement wrong by one part in a thousand is visible in the distance") {
     Job job;
     Case c = donut(job, 96);
     const EmittedMesh right = hardware_mesh(c);
@@ -304,7 +304,7 @@ TEST_CASE("a displacement off by one part in a thousand shows in the distance") 
     CHECK(off.hardware_to_golden.rms_world > 4 * fine.hardware_to_golden.rms_world);
 }
 
-TEST_CASE("a golden run that grows far beyond the hardware's is given up") {
+TEST_CASE("a golden run that grows far beyond the hardware's is abandoned") {
     Case c = donut(Job{}, 96);
     EmittedMesh mesh = hardware_mesh(c);
     mesh.triangles.resize(10);
@@ -314,7 +314,7 @@ TEST_CASE("a golden run that grows far beyond the hardware's is given up") {
     CHECK(result.hardware_to_golden.points == 0);
 }
 
-TEST_CASE("golden's own run passes within what is allowed, either way") {
+TEST_CASE("the golden run passes within the allowed differences in either direction") {
     EndToEndResult result;
     result.hardware_triangles = 1000;
     result.golden_triangles = 1000;

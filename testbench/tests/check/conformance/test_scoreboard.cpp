@@ -415,7 +415,7 @@ TEST_CASE("broken arithmetic between texels is caught") {
           }) > 100);
 }
 
-TEST_CASE("another diagonal is caught") {
+TEST_CASE("a wrong diagonal is caught") {
     Random random(7);
     MachineSetup setup = Case::make_setup(random, datapath::Formats{}, Manner::tame);
     setup.registers.triangulation = datapath::Triangulation::shorter;
@@ -457,7 +457,7 @@ TEST_CASE("a constant map never splits by height, and conforms") {
     }
 }
 
-TEST_CASE("near the near plane the two may differ only within rounding of w") {
+TEST_CASE("near the near plane hardware and golden model differ only within the rounding of w") {
     Random random(9);
     std::uint64_t flips = 0, flipped_edges = 0, in_front = 0, behind = 0;
     for (int design = 0; design < 400; ++design) {
@@ -495,7 +495,7 @@ TEST_CASE("near the near plane the two may differ only within rounding of w") {
     CHECK(flipped_edges > 0);
 }
 
-TEST_CASE("a vertex not in front has no screen position") {
+TEST_CASE("a vertex not in front of the near plane has no screen position") {
     Random random(10);
     MachineSetup setup = Case::make_setup(random, datapath::Formats{}, Manner::tame);
     setup.registers.transform.near_plane = std::int64_t{1} << 60;
@@ -506,7 +506,7 @@ TEST_CASE("a vertex not in front has no screen position") {
     CHECK(check(c, pass).mismatches == 1);
 }
 
-TEST_CASE("normals and tangents of length zero stay zero on both sides") {
+TEST_CASE("normals and tangents of length zero stay zero in hardware and golden model") {
     Random random(11);
     for (const datapath::Formats& formats : many_formats()) {
         Case c(random, formats, Manner::tame);
@@ -578,7 +578,7 @@ TEST_CASE("a saturated value is compared with the saturated golden value") {
     CHECK(quantity(check(c, pass), "P'_ij").outside == 1);
 }
 
-TEST_CASE("the first mismatch is told with all operands") {
+TEST_CASE("the first mismatch is reported with all operands") {
     Random random(13);
     Case c(random, datapath::Formats{}, Manner::tame);
     datapath::TrianglePass pass = c.pass(random);

@@ -92,8 +92,7 @@ datapath::TrianglePass decided(const MachineSetup& setup, datapath::TrianglePass
 
 }  // namespace
 
-TEST_CASE(
-    "the Curvature Test conforms in many formats, at thresholds that its own measures are, and so does the Mipmap Test") {
+TEST_CASE("the Curvature Test and the Mipmap Test conform in many formats, at thresholds equal to their own measures") {
     for (const auto make_setup : {random_setup, mipmap_setup}) {
         Random random(1);
         std::uint64_t split = 0, compared = 0;

@@ -13,7 +13,7 @@
 using namespace tessera;
 using namespace tessera::testing;
 
-TEST_CASE("another diagonal than golden's is caught for each pair of split edges") {
+TEST_CASE("a diagonal other than the golden model's is caught for each pair of split edges") {
     using datapath::Triangulation;
     // For each pair of split edges the remaining quadrilateral, of vertices 0 to 2 and midpoints 3 + k of edges k.
     const std::map<unsigned, std::array<unsigned, 4>> quadrilaterals{
@@ -69,7 +69,7 @@ TEST_CASE("another diagonal than golden's is caught for each pair of split edges
         CHECK(times > 3);
 }
 
-TEST_CASE("each wrong decision of each edge is one mismatch of its name") {
+TEST_CASE("each wrong decision of each edge is one mismatch under its own name") {
     const std::vector<std::pair<datapath::TestBits, std::string>> tests = {{datapath::normal_bit, "NT"},
                                                                            {datapath::summed_height_bit, "SHT"},
                                                                            {datapath::view_bit, "VT"},
@@ -132,7 +132,7 @@ TEST_CASE("each wrong decision of each edge is one mismatch of its name") {
     CHECK(excused * 100 < wrong);
 }
 
-TEST_CASE("a final edge: nothing of it is compared but that golden does not split it") {
+TEST_CASE("a final edge: only the golden model's decision not to split it is compared") {
     Random random(11);
     int whole = 0, split = 0;
     for (int design = 0; design < 60; ++design) {
@@ -163,7 +163,7 @@ TEST_CASE("a final edge: nothing of it is compared but that golden does not spli
     CHECK(split > 20);
 }
 
-TEST_CASE("a split edge's N, T, N' are compared, whatever the machine says it has evaluated") {
+TEST_CASE("a split edge's N, T, N' are compared even if the machine reports no evaluated test") {
     Random random(13);
     int split = 0;
     for (int k = 0; k < 300; ++k) {
@@ -181,7 +181,7 @@ TEST_CASE("a split edge's N, T, N' are compared, whatever the machine says it ha
     CHECK(split > 20);
 }
 
-TEST_CASE("a test that was not evaluated is not compared, and what follows from the others is") {
+TEST_CASE("a test that was not evaluated is not compared, and the decision of the others is") {
     Random random(12);
     int left_out = 0;
     for (int design = 0; design < 60; ++design) {

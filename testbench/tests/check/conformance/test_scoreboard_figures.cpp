@@ -7,7 +7,7 @@
 using namespace tessera;
 using namespace tessera::testing;
 
-TEST_CASE("the figures of a quantity, by hand") {
+TEST_CASE("the figures of a quantity equal those worked out by hand") {
     Random random(14);
     Case c(random, datapath::Formats{}, Manner::tame);
     datapath::Triangle triangle = c.pass(random).triangle;

@@ -101,7 +101,7 @@ TEST_CASE("Highlight Test: an end's own product is exact, no flip is allowed the
     }
 }
 
-TEST_CASE("Highlight Test: the split decision follows an allowed flip, and only that") {
+TEST_CASE("Highlight Test: only an allowed flip excuses a different split decision") {
     Random random(64);
     int followed = 0;
     const datapath::Formats narrow = make_formats(16, 8, 8, 6, 4, 8, 16, 2);
@@ -150,7 +150,7 @@ TEST_CASE("Highlight Test: the bound on N'.H holds and is no more than four time
     }
 }
 
-TEST_CASE("Highlight Test: a design without one is not asked about it") {
+TEST_CASE("Highlight Test: the result of a design without one does not list it") {
     Random random(66);
     Case c(random, datapath::Formats{}, Manner::tame);
     for (const ConformanceResult::Test& t : check(c, c.pass(random)).tests)

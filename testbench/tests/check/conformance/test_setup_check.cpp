@@ -349,7 +349,7 @@ TEST_CASE("one wrong fitted height fails its job") {
     CHECK_THAT(run.check().first_wrong, Contains("displacement map: (30, 30)"));
 }
 
-TEST_CASE("for every register of the default design a wrong value is tried") {
+TEST_CASE("a wrong value is tried for every register of the default design") {
     std::set<std::string> tried;
     for (const Mistake& mistake : register_mistakes())
         tried.insert(mistake.name.substr(0, mistake.name.find('[')));
@@ -375,12 +375,12 @@ struct TexCoordRow {
     int expected;
 };
 
-const testing::CaseTable tex_coord_fractions("what the Tex Coord Test compares, judged by golden: ",
+const testing::CaseTable tex_coord_fractions("operands of the Tex Coord Test, checked by golden: ",
                                              {TexCoordRow{"nearest, whole texels", MapFilter::nearest, -1, 12, 0},
                                               {"nearest, the job's half texels", MapFilter::nearest, 1, 12, 1},
                                               {"bilinear, half texels", MapFilter::bilinear, -1, 12, 1},
-                                              {"bilinear, half texels of one bit", MapFilter::bilinear, -1, 1, 1},
-                                              {"bilinear, whole texels of no bit", MapFilter::bilinear, -1, 0, 0},
+                                              {"bilinear, half texels, one bit", MapFilter::bilinear, -1, 1, 1},
+                                              {"bilinear, whole texels, no bits", MapFilter::bilinear, -1, 0, 0},
                                               {"bilinear, the job's whole texels", MapFilter::bilinear, 0, 12, 0},
                                               {"bilinear, the job's quarter texels", MapFilter::bilinear, 2, 12, 2}},
                                              [](const TexCoordRow& row) {
@@ -399,7 +399,7 @@ const testing::CaseTable tex_coord_fractions("what the Tex Coord Test compares, 
 
 }  // namespace
 
-TEST_CASE("the set-up of a job of other formats, with bias, highlight and a map that repeats, is right") {
+TEST_CASE("the setup of a job with other formats, a bias, a Highlight Test and a repeating map passes") {
     Job job;
     job.mesh.source = MeshSource::sphere;
     job.map.source = MapSource::noise;
@@ -446,7 +446,7 @@ TEST_CASE("the set-up of a job of other formats, with bias, highlight and a map 
     run.require_noticed(wrong, "triangle 3, vertex 1, texture.u");
 }
 
-TEST_CASE("a base triangle that collapses in the formats is left out, any other is not") {
+TEST_CASE("a base triangle is left out only if it collapses in the formats") {
     Job job;
     job.formats.position_bits = 10;
     job.formats.position_fraction = 4;
@@ -471,7 +471,7 @@ TEST_CASE("a base triangle that collapses in the formats is left out, any other 
     CHECK(received_triangles(run.setup, run.golden) == result.base_triangles);
 }
 
-TEST_CASE("a model scale that is no power of two, or too large, is not sound") {
+TEST_CASE("a model scale that is not a power of two, or is too large, is reported") {
     SetupRun run{Job{}};
     ModelScale three = run.setup.model_scale;
     three.scale *= 3;
@@ -484,7 +484,7 @@ TEST_CASE("a model scale that is no power of two, or too large, is not sound") {
     CHECK_THAT(result.first_wrong, Contains("a position"));
 }
 
-TEST_CASE("golden's own run is judged: by its triangles, by the surfaces' distance, by its bound") {
+TEST_CASE("the golden run is judged by its triangles, the distance of the surfaces and its bound") {
     Job job;
     job.tests.generation_limit = 4;
     job.displacement.scale = 0.5;
@@ -567,7 +567,7 @@ TEST_CASE("golden's own run is judged: by its triangles, by the surfaces' distan
     CHECK_THAT(conformance_text(checks), Contains("more than 1040, where its run was stopped"));
 }
 
-TEST_CASE("on a cylinder rounding moves normals, too, and they turn") {
+TEST_CASE("on a cylinder the allowed distance includes the rounding and turning of normals") {
     Job job;
     job.mesh.source = MeshSource::cylinder;
     job.mesh.columns = 8;

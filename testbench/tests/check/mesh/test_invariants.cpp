@@ -79,7 +79,7 @@ TEST_CASE("the datapath's own mesh passes, in any order") {
     require_only(plane.check(), {});
 }
 
-TEST_CASE("triangles that are missing or too many are counted, and the first is shown") {
+TEST_CASE("missing and extra triangles are counted, and the first is shown") {
     const Plane plane;
     const std::size_t all = plane.mesh.triangles.size();
     SECTION("one missing, one twice") {
@@ -92,7 +92,7 @@ TEST_CASE("triangles that are missing or too many are counted, and the first is 
             require_only(other.check(), {{"extra_triangles", 1}});
         }
     }
-    SECTION("all of a base triangle, all of all") {
+    SECTION("all of one base triangle, all of the mesh") {
         Plane other = plane;
         auto& t = other.mesh.triangles;
         t.erase(std::remove_if(t.begin(), t.end(), [](const auto& e) { return e.base == 3; }), t.end());
@@ -101,7 +101,7 @@ TEST_CASE("triangles that are missing or too many are counted, and the first is 
         t.clear();
         require_only(other.check(), {{"missing_triangles", all}});
     }
-    SECTION("the whole mesh twice; three times a triangle") {
+    SECTION("the whole mesh twice, one triangle three times") {
         Plane other = plane;
         auto& t = other.mesh.triangles;
         t.insert(t.end(), plane.mesh.triangles.begin(), plane.mesh.triangles.end());
@@ -110,7 +110,7 @@ TEST_CASE("triangles that are missing or too many are counted, and the first is 
         t.insert(t.end(), 2, plane.mesh.triangles.front());
         require_only(other.check(), {{"extra_triangles", 2}});
     }
-    SECTION("together with its reverse, so that each edge has as many triangles on either side") {
+    SECTION("together with its reverse, so that each edge has equally many triangles on both sides") {
         Plane other = plane;
         EmittedTriangle triangle = other.some_triangle();
         other.mesh.triangles.push_back(triangle);
@@ -129,7 +129,7 @@ TEST_CASE("triangles that are missing or too many are counted, and the first is 
         other.some_triangle().base = 3;
         require_only(other.check(), {{"missing_triangles", 1}, {"extra_triangles", 1}});
     }
-    SECTION("in words") {
+    SECTION("the first is described") {
         Plane other = plane;
         const EmittedTriangle triangle = other.some_triangle();
         other.mesh.triangles.push_back(triangle);
@@ -144,14 +144,14 @@ TEST_CASE("triangles that are missing or too many are counted, and the first is 
     }
 }
 
-TEST_CASE("a triangle that differs in anything is found") {
+TEST_CASE("a triangle that differs in any field is found") {
     const Plane plane;
     const auto check_with = [&](const std::function<void(EmittedTriangle&)>& change) {
         Plane other = plane;
         change(other.some_triangle());
         return other.check();
     };
-    SECTION("in what leaves its three places alone: it differs") {
+    SECTION("in a field other than its three places: it counts as differing") {
         const std::vector<std::function<void(EmittedTriangle&)>> changes{
             [](auto& t) { t.corners[0].displaced.x += 1; },
             [](auto& t) { t.corners[1].displaced.y -= 1; },
@@ -174,7 +174,7 @@ TEST_CASE("a triangle that differs in anything is found") {
         CHECK(text.find("base triangle 5: a triangle differs: P (") == 0);
         CHECK(text.find("; it should be P (") != std::string::npos);
     }
-    SECTION("in one of its places: it is missing, and another too many") {
+    SECTION("in one of its places: it counts as missing and extra") {
         const std::vector<std::function<void(Corner&)>> changes{
             [](Corner& c) { c.position.x += 1; }, [](Corner& c) { c.position.y += 1; },
             [](Corner& c) { c.position.z += 1; }, [](Corner& c) { c.texture.u ^= 1; },
@@ -187,7 +187,7 @@ TEST_CASE("a triangle that differs in anything is found") {
         require_only(check_with([](auto& t) { std::swap(t.corners[0], t.corners[2]); }),
                      {{"differing_triangles", 1}, {"turned_over", 1}});
     }
-    SECTION("a whole patch moved alike, closed in itself") {
+    SECTION("a whole patch moved as one, without a crack") {
         Plane other = plane;
         std::uint64_t moved = 0;
         for (EmittedTriangle& t : other.mesh.triangles)
@@ -198,7 +198,7 @@ TEST_CASE("a triangle that differs in anything is found") {
             }
         require_only(other.check(), {{"differing_triangles", moved}});
     }
-    SECTION("split on one of its edges, as by a unit that decides by triangle") {
+    SECTION("split on one edge only, as by a unit that decides per triangle") {
         for (std::size_t k = 0; k < 3; ++k) {
             Plane other = plane;
             EmittedTriangle &first = other.some_triangle(), second = first;
@@ -214,7 +214,7 @@ TEST_CASE("a triangle that differs in anything is found") {
     }
 }
 
-TEST_CASE("the check ends where the datapath's recursion does not") {
+TEST_CASE("the check ends even if the datapath's recursion does not") {
     Plane plane;
     datapath::TestParameters& tests = plane.setup.registers.tests;
     tests.generation_test = tests.tex_coord_test = false;
@@ -229,7 +229,7 @@ TEST_CASE("the check ends where the datapath's recursion does not") {
     CHECK_FALSE(result.first_violation.empty());
 }
 
-TEST_CASE("figures of single triangles") {
+TEST_CASE("single triangles are counted in their figures") {
     const Plane plane;
     SECTION("collapsed, in t and in P'") {
         Plane other = plane;
@@ -241,7 +241,7 @@ TEST_CASE("figures of single triangles") {
         d[2].displaced = d[0].displaced;
         require_only(other.check(), {{"differing_triangles", 1}, {"displaced_collapsed", 1}});
     }
-    SECTION("beyond the generation limit, where there is one") {
+    SECTION("beyond the generation limit, if there is one") {
         Plane other = plane;
         other.some_triangle().corners[2].generation = 5;
         require_only(other.check(), {{"differing_triangles", 1}, {"generation_violations", 1}});
@@ -252,7 +252,7 @@ TEST_CASE("figures of single triangles") {
         other.setup.registers.tests.generation_test = false;
         CHECK(other.check().generation_violations == 0);
     }
-    SECTION("a base triangle without texture area, and one the other way round, turn nothing over") {
+    SECTION("base triangles without texture area or with opposite winding count nothing as turned over") {
         MachineSetup setup = plane.setup;
         auto& flat = setup.base_triangles[0].vertices;
         flat[2].texture = datapath::midpoint(flat[0].texture, flat[1].texture);
@@ -269,7 +269,7 @@ TEST_CASE("figures of single triangles") {
     }
 }
 
-TEST_CASE("each violation counts, what is rounding's or the input's does not, the figures are complete") {
+TEST_CASE("each violation counts, effects of rounding and of the input do not, the figures are complete") {
     InvariantResult result;
     result.collapsed = result.turned_over = result.displaced_collapsed = 5;
     result.open_texture_seam_edges = result.open_crease_edges = 2;

@@ -120,7 +120,7 @@ bool is_on_border(const MachineSetup& setup, const TrianglePass& pass, int k) {
 
 }  // namespace
 
-TEST_CASE("lineage: a plane closes") {
+TEST_CASE("lineage: a plane has no faults") {
     const MachineSetup setup = setup_of(small_job());
     const InvariantResult result = check(setup);
     require_faults(result, 0, 0, 0);
@@ -172,7 +172,7 @@ TEST_CASE("lineage: any finished triangle left out, doubled or turned over is fo
     CHECK(tried > 100);
 }
 
-TEST_CASE("lineage: an edge split by one triangle alone is a T-vertex, but on the base mesh's border") {
+TEST_CASE("lineage: an edge split by one triangle alone is a T-vertex, except on the base mesh's border") {
     const MachineSetup setup = setup_of(small_job());
     std::size_t inside = 0, on_border = 0;
     for (std::size_t n = 0; n < 600; n += 5)
@@ -197,7 +197,7 @@ TEST_CASE("lineage: an edge split by one triangle alone is a T-vertex, but on th
     CHECK(on_border > 2);
 }
 
-TEST_CASE("lineage: a vertex that differs in anything from one triangle to another is found, once") {
+TEST_CASE("lineage: a vertex that differs between triangles in any field is found, once") {
     const MachineSetup setup = setup_of(small_job());
     const std::vector<std::function<void(datapath::Vertex&)>> changes{[](auto& v) { v.position.x += 1; },
                                                                       [](auto& v) { v.normal.y += 1; },
@@ -237,7 +237,7 @@ TEST_CASE("lineage: a wrong triangulation leaves edges without their triangles")
             CHECK(result.cracks > 2);
         }
     }
-    SECTION("a child there twice, the other not at all") {
+    SECTION("one child twice, the other missing") {
         std::array<std::uint8_t, 3> first{};
         const InvariantResult result = check_broken(setup, {}, [&](std::size_t number, auto corners) {
             if (number == 0)
@@ -246,7 +246,7 @@ TEST_CASE("lineage: a wrong triangulation leaves edges without their triangles")
         });
         CHECK(result.cracks > 2);
     }
-    SECTION("a child that has its parent's edge whole, though that is split") {
+    SECTION("a child with its parent's whole edge, though the edge is split") {
         const InvariantResult result = check_broken(setup, {}, [&](std::size_t number, auto corners) {
             return number == 0 ? std::array<std::uint8_t, 3>{0, 1, 2} : corners;
         });
@@ -254,7 +254,7 @@ TEST_CASE("lineage: a wrong triangulation leaves edges without their triangles")
     }
 }
 
-TEST_CASE("lineage: the datapath's own faults between base triangles") {
+TEST_CASE("lineage: a shared base vertex with two generations is found with its cracks") {
     const MachineSetup setup = setup_of(small_job());
     // One copy of a shared vertex is of the last generation, so that its triangles do not split their edges there.
     MachineSetup older = setup;
@@ -266,7 +266,7 @@ TEST_CASE("lineage: the datapath's own faults between base triangles") {
     CHECK(result.first_violation.find("base triangle ") == 0);
 }
 
-TEST_CASE("lineage: a base triangle that is there twice, and a mesh folded on itself") {
+TEST_CASE("lineage: duplicated base triangles and a mesh folded onto itself are not faults") {
     MachineSetup setup = setup_of(small_job());
     const std::size_t once = setup.base_triangles.size();
     for (std::size_t b = 0; b < once; ++b) {  // a second copy, wound the opposite way
@@ -290,7 +290,7 @@ TEST_CASE("lineage: a base triangle that is there twice, and a mesh folded on it
 }
 
 TEST_CASE("lineage: a cylinder's seam") {
-    SECTION("closes where the map repeats, and is checked there") {
+    SECTION("is closed and checked in repeat") {
         const MachineSetup setup = round_setup(Addressing::repeat);
         const InvariantResult result = check(setup);
         require_faults(result, 0, 0, 0);
@@ -309,7 +309,7 @@ TEST_CASE("lineage: a cylinder's seam") {
             });
         CHECK(open.inconsistent_vertices > 2);
     }
-    SECTION("in clamp, what is open there is the map's doing") {
+    SECTION("in clamp, open edges are counted as a texture seam") {
         const InvariantResult result = check(round_setup(Addressing::clamp));
         require_faults(result, 0, 0, 0);
         CHECK(result.base_edges == 24);
@@ -331,7 +331,7 @@ TEST_CASE("lineage: a cylinder's seam") {
     }
 }
 
-TEST_CASE("lineage: pieces open along a seam are counted on the finer side") {
+TEST_CASE("lineage: open pieces along a seam are counted on the finer side") {
     // Two triangles over one map; the copies of their common edge are half the map apart. One splits, one does not.
     MachineSetup setup = setup_of(small_job());
     setup.base_triangles.resize(2);
@@ -353,7 +353,7 @@ TEST_CASE("lineage: pieces open along a seam are counted on the finer side") {
     CHECK(result.open_texture_seam_edges == pieces);
 }
 
-TEST_CASE("lineage: a crease of the base mesh is the input's") {
+TEST_CASE("lineage: open edges along a crease of the base mesh are not faults") {
     MachineSetup setup = setup_of(small_job());
     for (std::size_t b = 4; b < 8; ++b)
         for (datapath::Vertex& v : setup.base_triangles[b].vertices)

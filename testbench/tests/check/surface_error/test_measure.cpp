@@ -30,7 +30,7 @@ void require_constant(const DirectedError& error, double distance) {
 
 }  // namespace
 
-TEST_CASE("a plane displaced by a constant is that far from its base, by any map and anywhere in space") {
+TEST_CASE("a plane displaced by a constant is at that distance from its base, for any map and position") {
     for (const int size : {1, 2, 7}) {
         const HeightMap map = make_map(size, size + 1, [](int, int) { return 0.5; });
         for (const double offset : {0.0, 1e6}) {
@@ -50,7 +50,7 @@ TEST_CASE("a plane displaced by a constant is that far from its base, by any map
     }
 }
 
-TEST_CASE("a mesh that is the surface has no error, and one shifted by d has the error d") {
+TEST_CASE("a mesh equal to the surface has no error, and one shifted by d has the error d") {
     const BaseMesh base = make_plane(3, 3, 3, 2);
     const HeightMap map = make_map(6, 4, [](int, int) { return 1; });
     for (const double d : {0.0, 1e-9, 0.25, -3.0, 1e3}) {
@@ -79,7 +79,7 @@ TEST_CASE("a mesh that is the surface has no error, and one shifted by d has the
     CHECK(error.hausdorff() == Approx(0.25));
 }
 
-TEST_CASE("a tent over its undisplaced base, in closed form") {
+TEST_CASE("a tent over its undisplaced base has the error of the closed form") {
     // Nine texels of one model unit: 0 at the first centre, 1 at the fifth, 0 at the ninth; level beyond these.
     const BaseMesh base = make_plane(2, 1, 9, 1);
     const HeightMap map = make_map(9, 1, [](int x, int) { return 1 - std::abs(x - 4) / 4.0; });
@@ -102,7 +102,7 @@ TEST_CASE("a tent over its undisplaced base, in closed form") {
     CHECK(steps.reference_to_mesh.rms == Approx(top * std::sqrt(squares)).epsilon(0.02));
 }
 
-TEST_CASE("the map between its texels, interpolated and as the hardware reads it") {
+TEST_CASE("the map is read between texels, interpolated and as the hardware reads it") {
     const HeightMap map = make_map(3, 2, [](int x, int y) { return x + 10 * y; });
     const BaseMesh base = make_plane(1, 1, 1, 1);
     const auto value = [&](double u, double v, Sampling sampling, Addressing mode) {
@@ -130,7 +130,7 @@ TEST_CASE("the map between its texels, interpolated and as the hardware reads it
     CHECK(value(2 - 1e-13, 0.5, S::nearest_texel, A::clamp) == 2);
 }
 
-TEST_CASE("a point of a curved base is displaced along the interpolated normal made unit again") {
+TEST_CASE("a point of a curved base is displaced along the renormalised interpolated normal") {
     const BaseMesh base = make_cylinder(4, 1, 2, 3);
     const HeightMap map = make_map(1, 1, [](int, int) { return 0.5; });
     const DisplacedSurface surface(base, map, heights(2, 1), LocalFrame{});
@@ -148,7 +148,7 @@ TEST_CASE("a point of a curved base is displaced along the interpolated normal m
     }
 }
 
-TEST_CASE("figures are those of comparing everything with everything") {
+TEST_CASE("figures equal those of an exhaustive comparison") {
     std::mt19937 random(7);
     const auto uniform = [&](double low, double high) {
         return std::uniform_real_distribution<double>(low, high)(random);
@@ -190,7 +190,7 @@ TEST_CASE("figures are those of comparing everything with everything") {
     }
 }
 
-TEST_CASE("many tiles and a fine mesh against comparing everything with everything") {
+TEST_CASE("many tiles and a fine mesh give the figures of an exhaustive comparison") {
     std::mt19937 random(11);
     const BaseMesh base = make_plane(1, 1, 2, 2);
     const HeightMap map =
@@ -223,7 +223,7 @@ TEST_CASE("many tiles and a fine mesh against comparing everything with everythi
     }
 }
 
-TEST_CASE("mirroring all, turning corners and mixing triangles change no figure") {
+TEST_CASE("mirroring, rotating corners and reordering triangles change no figure") {
     const BaseMesh base = make_plane(2, 2, 2, 2);
     const auto value = [](int x, int y) { return (x * 7 + y * 3) % 5 / 4.0; };
     const HeightMap map = make_map(8, 8, value);
@@ -261,7 +261,7 @@ TEST_CASE("mirroring all, turning corners and mixing triangles change no figure"
     CHECK(again.vertices == error.vertices);
 }
 
-TEST_CASE("no mesh, one triangle, a collapsed one and one point") {
+TEST_CASE("an empty mesh, one triangle, a collapsed triangle and one point are measured") {
     const BaseMesh base = make_plane(1, 1, 2, 2);
     const HeightMap map = make_map(2, 2, [](int, int) { return 1; });
     for (const Sampling sampling : both) {
@@ -296,7 +296,7 @@ TEST_CASE("no mesh, one triangle, a collapsed one and one point") {
     }
 }
 
-TEST_CASE("what the emitted triangle at the worst spot was kept whole by is told") {
+TEST_CASE("the worst spot reports its triangle's generation and the tests that stopped it") {
     const BaseMesh base = make_plane(1, 1, 2, 2);
     const HeightMap map = make_map(2, 2, [](int, int) { return 0; });
     RecordedMesh mesh = emitted(base, [](const BaseVertex& v) {
@@ -341,7 +341,7 @@ TEST_CASE("a surface that closes in u is measured across its seam") {
     CHECK(other.mesh_to_reference.rms == Approx(one.mesh_to_reference.rms).epsilon(1e-9));
 }
 
-TEST_CASE("limits lower the density and say so, to a facet a base triangle at the least") {
+TEST_CASE("limits lower the density to one facet per base triangle at least, and are reported") {
     const BaseMesh base = make_plane(2, 2, 2, 2);
     const HeightMap map = make_map(64, 64, [](int x, int y) { return (x + y) % 2; });
     const DisplacedSurface surface(base, map, heights(1), LocalFrame{});
@@ -367,7 +367,7 @@ TEST_CASE("limits lower the density and say so, to a facet a base triangle at th
     CHECK(error.interpolated.reference_to_mesh.samples <= 10000);
 }
 
-TEST_CASE("the error is the same on any number of threads, and progress ends at one") {
+TEST_CASE("the error is the same on any number of threads, and progress ends at 1") {
     const BaseMesh base = make_cylinder(12, 4, 1, 2);
     const HeightMap map = make_map(40, 40, [](int x, int y) { return (x * 7 + y * 5) % 11 / 11.0; });
     const RecordedMesh mesh = emitted(base);

@@ -22,7 +22,7 @@ VerticalError vertical(const BaseMesh& base, const HeightMap& map, const Displac
 
 }  // namespace
 
-TEST_CASE("vertical error of the undisplaced base is the map itself") {
+TEST_CASE("the vertical error of the undisplaced base is the map itself") {
     const BaseMesh base = make_plane(3, 2, 4, 6);
     HeightMap map = make_map(5, 7, [](int x, int y) { return x == 3 && y == 2 ? 1 : 0.25; });
     map.source_units = 200;
@@ -64,7 +64,7 @@ TEST_CASE("a mesh through all texel centres has no vertical error, and a hole is
     CHECK(vertical(base, map, scaled(0), mesh).map_unit == 0);
 }
 
-TEST_CASE("heights over a plane in any position, and over each copy of a map that repeats") {
+TEST_CASE("heights are measured over a plane in any position and over each copy of a repeating map") {
     const HeightMap map = make_map(4, 4, [](int x, int y) { return x + y; });
     BaseMesh base = make_plane(2, 2, 2, 2);
     const glm::dvec3 e0 = glm::normalize(glm::dvec3(1, 2, 2)), e1 = glm::normalize(glm::dvec3(2, 1, -2));
@@ -90,7 +90,7 @@ TEST_CASE("heights over a plane in any position, and over each copy of a map tha
     CHECK(vertical(base, map, scaled(0.5, 0, Addressing::repeat), emitted(base)).max == Approx(3));
 }
 
-TEST_CASE("an axis that repeats and one that clamps are told apart") {
+TEST_CASE("a repeating axis and a clamping axis are distinguished") {
     const HeightMap map = make_map(4, 4, [](int x, int y) { return x + 10 * y; });
     for (const bool along_u : {true, false}) {
         // Two copies along one axis: clamped there, it would read 3 instead of 0, 1 and 2 beyond the first.
@@ -107,7 +107,7 @@ TEST_CASE("an axis that repeats and one that clamps are told apart") {
     }
 }
 
-TEST_CASE("what is no height field is told in words") {
+TEST_CASE("a surface that is not a height field is reported with the reason") {
     const HeightMap map = make_map(4, 4, [](int, int) { return 0; });
     std::string why;
     CHECK_FALSE(find_height_field(make_cylinder(8, 1, 1, 1), map, scaled(1), why));

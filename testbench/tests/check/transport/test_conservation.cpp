@@ -143,7 +143,7 @@ void read_directly(MemoryPort& port, std::uint64_t address) {
 
 }  // namespace
 
-TEST_CASE("conservation: the sides of every equation, functional mode, by hand") {
+TEST_CASE("conservation: the sides of every equation are those worked out by hand, functional mode") {
     Job job = full_split_job(1, 1);
     job.mode = Mode::functional;
     const MachineSetup setup = setup_of(job);
@@ -152,13 +152,13 @@ TEST_CASE("conservation: the sides of every equation, functional mode, by hand")
     CHECK(sides_of(simulation) == two_triangles_functional);
 }
 
-TEST_CASE("conservation: the sides of every equation, timed mode, by hand") {
+TEST_CASE("conservation: the sides of every equation are those worked out by hand, timed mode") {
     TimedRun simulation(two_triangles_split_once());
     CHECK(sides_of(simulation) == two_triangles_timed());
 }
 
 // A constant map: one triangle without split edges makes a second pass for its normals. Culling drops it at the end.
-TEST_CASE("conservation: triangles sent round for normals, and culled ones") {
+TEST_CASE("conservation: triangles sent round for normals and culled triangles balance") {
     Job job = timed_job();
     job.mesh.columns = job.mesh.rows = 1;
     job.map.source = MapSource::constant;
@@ -175,7 +175,7 @@ TEST_CASE("conservation: triangles sent round for normals, and culled ones") {
     CHECK(sides.at("triangles in lighting = finished - culled") == Sides{0, 0});
 }
 
-TEST_CASE("conservation: an item too many in a unit breaks its equation and no other") {
+TEST_CASE("conservation: an extra item in a unit breaks its equation and no other") {
     TimedRun simulation(two_triangles_split_once());
     Pipeline& p = simulation.pipeline;
     TessellationTests& tests = p.tessellation_tests[0];
@@ -203,7 +203,7 @@ TEST_CASE("conservation: an item too many in a unit breaks its equation and no o
                       {{equation, {1, 0}}});
 }
 
-TEST_CASE("conservation: an item too many on a stream") {
+TEST_CASE("conservation: an extra item on a stream breaks its equations") {
     TimedRun simulation(two_triangles_split_once());
     Pipeline& p = simulation.pipeline;
     auto point = part_of_it<ScreenPoint>(first_edge_part);
@@ -229,7 +229,7 @@ TEST_CASE("conservation: an item too many on a stream") {
                    {"triangles in triangle_queue = taken by it", {0, 1}}});
 }
 
-TEST_CASE("conservation: a read too many") {
+TEST_CASE("conservation: an extra read breaks its equations") {
     TimedRun simulation(two_triangles_split_once());
     Pipeline& p = simulation.pipeline;
     const datapath::Registers& r = simulation.setup.registers;
@@ -292,7 +292,7 @@ TEST_CASE("conservation: each side of the displacement map has its own requests 
 }
 
 // By blocking transport, which does all the work at once.
-TEST_CASE("conservation: a vertex transformed, and triangles decided, too many") {
+TEST_CASE("conservation: an extra transformed vertex and extra decided triangles break their equations") {
     TimedRun simulation(two_triangles_split_once());
     Pipeline& p = simulation.pipeline;
 
@@ -383,7 +383,7 @@ TEST_CASE("conservation: a vertex transformed, and triangles decided, too many")
 }
 
 // Two places on chip: some of the spilled triangles are still off chip when the machine is stopped.
-TEST_CASE("conservation: triangles that are off chip have not come back") {
+TEST_CASE("conservation: spilled triangles still off chip do not count as read back") {
     Job job = full_split_job(1, 3);
     job.hardware.queue_capacity = 2;
     const MachineSetup setup = setup_of(job);

@@ -70,7 +70,7 @@ struct OneTriangle {
 
 }  // namespace
 
-TEST_CASE("work check: whatever changes on a triangle's way is noticed where it changes") {
+TEST_CASE("work check: a changed field of a triangle is detected where it changes") {
     const WorkResult right = OneTriangle{}.result();
     INFO(right.first_violation);
     REQUIRE(right.passed());

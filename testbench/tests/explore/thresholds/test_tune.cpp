@@ -128,7 +128,7 @@ TunedPoint brute_force(const Job& job, const TuneGoal& goal) {
 
 }  // namespace
 
-TEST_CASE("threshold levels rise, and are undone") {
+TEST_CASE("threshold levels rise and are invertible") {
     CHECK(threshold_at(0) == 1);
     CHECK(threshold_at(levels_per_octave) == 2);
     CHECK(threshold_at(-3 * levels_per_octave) == 0.125);
@@ -141,7 +141,7 @@ TEST_CASE("threshold levels rise, and are undone") {
     }
 }
 
-TEST_CASE("the forest's mesh is the datapath's, whatever the thresholds") {
+TEST_CASE("the forest's mesh is the datapath's for any thresholds") {
     std::mt19937 random(7);
     const auto between = [&](double low, double high) {
         return low * std::pow(high / low, static_cast<double>(random()) / 4294967295.0);
@@ -199,7 +199,7 @@ TEST_CASE("the search's error on a height field is the vertical error") {
     }
 }
 
-TEST_CASE("no budget is exceeded, and no dense grid of thresholds does better") {
+TEST_CASE("no budget is exceeded, and no dense grid of thresholds is better") {
     Job job = small_job();
     for (const bool largest : {false, true})
         for (const std::uint64_t budget : {18u, 60u, 200u, 700u, 1500u}) {
@@ -220,7 +220,7 @@ TEST_CASE("no budget is exceeded, and no dense grid of thresholds does better") 
         }
 }
 
-TEST_CASE("tuned thresholds stand clear of every edge's own value") {
+TEST_CASE("tuned thresholds keep a distance from every edge's own value") {
     for (const bool both : {true, false})
         for (const std::uint64_t budget : {100u, 300u, 600u, 900u}) {
             TuneRequest request = request_for(small_job());
@@ -252,7 +252,7 @@ TEST_CASE("tuned thresholds stand clear of every edge's own value") {
         }
 }
 
-TEST_CASE("an error's bound is kept with about as few triangles as a dense grid finds") {
+TEST_CASE("an error's bound is met with about as few triangles as a dense grid finds") {
     const Job job = small_job();
     for (const double bound : {0.03, 0.015, 0.011}) {
         TuneRequest request = request_for(job);
@@ -267,7 +267,7 @@ TEST_CASE("an error's bound is kept with about as few triangles as a dense grid 
     }
 }
 
-TEST_CASE("a View Test that is searched is used, and alone too") {
+TEST_CASE("a View Test in the search is used, also alone") {
     TuneRequest request = request_for(small_job());
     request.job.tests.view = true;
     request.goal.triangles = 400;
@@ -288,7 +288,7 @@ TEST_CASE("a View Test that is searched is used, and alone too") {
     CHECK(alone.point.outcome.triangles > 300);
 }
 
-TEST_CASE("a Rank Test's threshold is the best of all that its register can hold") {
+TEST_CASE("a Rank Test's threshold is the best of all values of its register") {
     for (const bool largest : {false, true}) {
         TuneRequest request = request_for(small_job());
         request.bases = rank_lattices(request.job, 48, 40, 100);
@@ -388,7 +388,7 @@ TEST_CASE("a Rank Table's file has each texel's rank and bound, little endian") 
     }
 }
 
-TEST_CASE("of the paper's tests and a Rank Test the better is taken") {
+TEST_CASE("the better of the paper's tests and a Rank Test is chosen") {
     TuneRequest request = request_for(small_job());
     for (const BaseChoice& base : rank_lattices(request.job, 48, 40, 200))
         request.bases.push_back(base);
@@ -467,7 +467,7 @@ TEST_CASE("a lattice has its inner vertices at texel centres and covers the map"
     }
 }
 
-TEST_CASE("goals that cannot be met end in what can be had") {
+TEST_CASE("goals that cannot be met are refused with the nearest that can") {
     TuneRequest request = request_for(small_job());
     const auto refused = [&] { return testing::input_error_of([&] { tuned(request); }); };
     request.goal.triangles = 17;

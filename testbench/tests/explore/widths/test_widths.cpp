@@ -136,7 +136,7 @@ TEST_CASE("widths: a row's figures are the simulation's, a sphere of few texture
     expect_the_simulation_figures(job);
 }
 
-TEST_CASE("widths: where everything can be written exactly nothing differs from exact arithmetic") {
+TEST_CASE("widths: values that the formats hold exactly give the results of exact arithmetic") {
     // a plane of 4 x 4 quads on 64 texels: all coordinates are dyadic, and on a constant map no normal is rounded
     Job job = small_job();
     job.mesh.columns = job.mesh.rows = 4;
@@ -159,7 +159,7 @@ TEST_CASE("widths: where everything can be written exactly nothing differs from 
     CHECK(steps.position_max <= 0.5 * job.displacement.scale * (1 + 1e-6));
 }
 
-TEST_CASE("widths: a position's error is the midpoint's rounding, of a flat surface without height") {
+TEST_CASE("widths: on a flat surface a position's error is the midpoint's rounding") {
     Job job = small_job();
     job.displacement.scale = 0;
     job.displacement.bias = 0;
@@ -175,7 +175,7 @@ TEST_CASE("widths: a position's error is the midpoint's rounding, of a flat surf
     CHECK(run.position_rms <= run.position_max);
 }
 
-TEST_CASE("widths: more bits, less error and fewer flips") {
+TEST_CASE("widths: more bits give less error and fewer flips") {
     const WidthTable normals = table_of(sphere_job(), "normal", {18, 14, 10, 7});
     const WidthTable positions = table_of(sphere_job(), "position", {32, 24, 18, 12});
     for (std::size_t k = 1; k < 4; ++k) {
@@ -195,7 +195,7 @@ TEST_CASE("widths: more bits, less error and fewer flips") {
         }
 }
 
-TEST_CASE("widths: refused widths keep their place and say why") {
+TEST_CASE("widths: refused widths keep their row, with the reason") {
     Job job = small_job();
     job.formats.generation_bits = 4;
     const WidthTable generations = table_of(job, "generation", {4, 3, 2});
@@ -221,7 +221,7 @@ TEST_CASE("widths: refused widths keep their place and say why") {
     CHECK_THAT(csv, Contains("out of range"));
 }
 
-TEST_CASE("widths: the knee is the narrowest width that keeps, with all wider ones, to all limits") {
+TEST_CASE("widths: the knee is the narrowest width that, with all wider ones, meets all limits") {
     Job job = sphere_job();
     job.check.allowed_flips = 100;
     const std::vector<SweptQuantity> swept{{find_quantity("normal"), {18, 15, 12, 9, 7}}};
@@ -253,7 +253,7 @@ TEST_CASE("widths: the knee is the narrowest width that keeps, with all wider on
     CHECK_THAT(widths_text(request, {0, {at_third}, {}}), Contains("knee: 12 bits, 10 of them fraction"));
 }
 
-TEST_CASE("widths: the same bytes with any number of threads") {
+TEST_CASE("widths: the output is the same with any number of threads") {
     const std::vector<SweptQuantity> swept{{find_quantity("normal"), {16, 12, 8}},
                                            {find_quantity("screen_range"), {24, 16, 11}}};
     WidthRequest request{small_job(), swept, 1, {}, {}};
@@ -265,7 +265,7 @@ TEST_CASE("widths: the same bytes with any number of threads") {
     CHECK(nlohmann::json::parse(widths_json(request, one)).at("quantities").at("normal").at("rows").size() == 3);
 }
 
-TEST_CASE("widths: the widths of a sweep, widest first, the job's own among them") {
+TEST_CASE("widths: a sweep lists its widths from the widest, the job's own included") {
     for (const Quantity& quantity : quantities()) {
         INFO(quantity.name);
         Job::Formats formats;

@@ -63,7 +63,7 @@ TEST_CASE("half donut and ramp agree with the reference maps to one code of 16 b
     CHECK(differ(ramp_map(256, 256), read_height_map(folder / "ramp_256.pgm")) <= 1);
 }
 
-TEST_CASE("the maps of the project's jobs are those of the shared data") {
+TEST_CASE("the maps of the project's jobs equal those of the shared data") {
     const std::filesystem::path shared = shared_data("maps"), ours = source_folder() / "testbench/examples/jobs";
     if (shared.empty())
         return;
@@ -78,7 +78,7 @@ TEST_CASE("the maps of the project's jobs are those of the shared data") {
           read_height_map(shared / "head_lps_512.pgm").values);
 }
 
-TEST_CASE("the maps of the project's jobs hold what ORIGINS.txt says") {
+TEST_CASE("the maps of the project's jobs agree with ORIGINS.txt") {
     const std::filesystem::path ours = source_folder() / "testbench/examples/jobs";
     const HeightMap crater = read_height_map(ours / "crater_lake_west.png");
     REQUIRE(crater.width == 336);
@@ -94,7 +94,7 @@ TEST_CASE("the maps of the project's jobs hold what ORIGINS.txt says") {
     CHECK(*std::max_element(head.values.begin(), head.values.end()) == 1);
 }
 
-TEST_CASE("text is legible: inside the map, flat tops, soft edges, every character different") {
+TEST_CASE("text is inside the map, with flat tops and soft edges, each character different") {
     const HeightMap map = text_map(512, 256, "Tessera 2000");
     double total = 0;
     bool top = false;
@@ -131,7 +131,7 @@ TEST_CASE("text is legible: inside the map, flat tops, soft edges, every charact
     CHECK(letter.at(30, 80) == 1);
 }
 
-TEST_CASE("noise depends on seed and place only, and is about uniform") {
+TEST_CASE("noise depends on seed and position only, and is about uniform") {
     const HeightMap map = noise_map(128, 64, 7);
     const HeightMap larger = noise_map(300, 70, 7);
     for (int y = 0; y < 64; ++y)
@@ -150,7 +150,7 @@ TEST_CASE("built-in maps have the same bits everywhere") {
     CHECK(fingerprint(constant_map(3, 3, 0.3)) == 0x6f651fa89aab04cdU);
 }
 
-TEST_CASE("built-in maps refuse what makes no sense") {
+TEST_CASE("built-in maps refuse invalid parameters") {
     CHECK(constant_map(2, 3, 0.5).values == std::vector<float>(6, 0.5F));
     CHECK_THROWS_WITH(constant_map(2, 2, 1.5), Contains("value is 1.5; it must be 0 to 1"));
     CHECK_THROWS_AS(constant_map(2, 2, std::nan("")), InputError);

@@ -63,7 +63,7 @@ std::size_t first_chunk(const std::string& file, std::size_t chunks) {
 
 }  // namespace
 
-TEST_CASE("an EXR map keeps its values, whatever its pixel type, compression, tiling and origin") {
+TEST_CASE("an EXR map keeps its values for any pixel type, compression, tiling and origin") {
     const TestFolder folder;
     const auto pixels = GENERATE(Pixels::uint, Pixels::half, Pixels::float_);
     const auto compression = GENERATE(0, 1, 2, 3, 4, 5);
@@ -89,7 +89,7 @@ TEST_CASE("an EXR map keeps its values, whatever its pixel type, compression, ti
     CHECK(map.repairs.size() == (pixels == Pixels::uint ? 1 : 0));
 }
 
-TEST_CASE("of a mip map the finest level is read") {
+TEST_CASE("the finest level of a mip map is read") {
     const TestFolder folder;
     ExrImage image = steps();
     image.tiled = true;
@@ -116,7 +116,7 @@ TEST_CASE("an EXR channel is chosen by name, else Y, else R, else the only one")
     CHECK_THROWS_WITH(first_value({"A", "B"}, "Y"), Contains("no channel \"Y\"; it has: A, B"));
 }
 
-TEST_CASE("values that are not finite are repaired and counted, a map of nothing else is refused") {
+TEST_CASE("values that are not finite are repaired and counted, a map without finite values is refused") {
     const TestFolder folder;
     for (const auto pixels : {Pixels::half, Pixels::float_}) {
         write_exr(folder / "a.exr", {3, 2, {not_a_number, infinity, -infinity, 2, 5, not_a_number}, pixels});
@@ -134,7 +134,7 @@ TEST_CASE("values that are not finite are repaired and counted, a map of nothing
     }
 }
 
-TEST_CASE("a constant EXR map has an empty range, subnormal numbers are kept and said") {
+TEST_CASE("a constant EXR map has an empty range, subnormal numbers are kept and reported") {
     const TestFolder folder;
     write_exr(folder / "a.exr", {2, 2, {7, 7, 7, 7}});
     const HeightMap constant = read_height_map(folder / "a.exr");
@@ -205,7 +205,7 @@ TEST_CASE("the OpenEXR project's own test images are read") {
     CHECK(t02.values == read_height_map(folder / "oexr_t08.exr").values);
 }
 
-TEST_CASE("an EXR chunk that holds less than its pixels is refused, whatever its compression") {
+TEST_CASE("an EXR chunk with less data than its pixels is refused, for any compression") {
     const TestFolder folder;
     const auto [compression, tiled] =
         GENERATE(table<int, bool>({{0, false}, {0, true}, {1, false}, {1, true}, {2, false}, {3, false}, {3, true}}));
@@ -236,7 +236,7 @@ TEST_CASE("an EXR chunk that holds less than its pixels is refused, whatever its
                       Contains(compression == 0 ? "bytes of pixels of " : "decompress") && Contains("It is damaged"));
 }
 
-TEST_CASE("an EXR file without what its pixels can do without is read with a remark") {
+TEST_CASE("an EXR file without data that its pixels do not need is read with a remark") {
     const TestFolder folder;
     ExrImage image = steps();
     image.tiled = GENERATE(false, true);
@@ -263,7 +263,7 @@ TEST_CASE("an EXR file without what its pixels can do without is read with a rem
     CHECK_THAT(map.repairs[0], Contains(remark));
 }
 
-TEST_CASE("an EXR file without what its pixels need is refused") {
+TEST_CASE("an EXR file without data that its pixels need is refused") {
     const TestFolder folder;
     write_exr(folder / "good.exr", steps());
     const std::string good = read_all(folder / "good.exr");
@@ -304,7 +304,7 @@ TEST_CASE("EXR files of several parts, or of deep data, are refused") {
     CHECK_THROWS_WITH(read_height_map(path), Contains(message));
 }
 
-TEST_CASE("EXR attributes that are not as long as they say are refused") {
+TEST_CASE("EXR attributes shorter or longer than their stated size are refused") {
     const TestFolder folder;
     const auto [type, value] = GENERATE(table<std::string, std::string>({
         {"preview", "\xff\xff\0\0\xff\x3f\0\0"s},

@@ -97,7 +97,7 @@ int refused_damage(const TestFolder& folder, const std::string& good) {
 
 }  // namespace
 
-TEST_CASE("hostile maps are refused, but for those that can be mended") {
+TEST_CASE("hostile maps are refused, except those that can be repaired") {
     const auto [kind, least] = GENERATE(table<std::string, int>({{"exr_crafted", 37}, {"png", 21}, {"pgm", 22}}));
     const auto folder = shared_data("hostile/" + kind);
     if (folder.empty())
@@ -121,7 +121,7 @@ TEST_CASE("hostile maps are refused, but for those that can be mended") {
     CHECK(count >= least);
 }
 
-TEST_CASE("EXR files cut off or with bytes changed") {
+TEST_CASE("EXR files cut off or with changed bytes are read or refused") {
     const TestFolder folder;
     const auto tiled = GENERATE(false, true);
     const auto compression = GENERATE(0, 1, 3, 4, 5, 6, 8);
@@ -136,7 +136,7 @@ TEST_CASE("EXR files cut off or with bytes changed") {
     CHECK(refused_damage(folder, read_all(folder / "good.exr")) > damaged_files / 2);
 }
 
-TEST_CASE("PNG files cut off or with bytes changed are all refused") {
+TEST_CASE("PNG files cut off or with changed bytes are all refused") {
     const TestFolder folder;
     const auto interlaced = GENERATE(false, true);
     const auto type = GENERATE(PNG_COLOR_TYPE_GRAY, PNG_COLOR_TYPE_PALETTE);
@@ -149,7 +149,7 @@ TEST_CASE("PNG files cut off or with bytes changed are all refused") {
     CHECK(refused_damage(folder, read_all(folder / "good.png")) == damaged_files);
 }
 
-TEST_CASE("PGM files cut off or with bytes changed") {
+TEST_CASE("PGM files cut off or with changed bytes are read or refused") {
     const TestFolder folder;
     const auto good =
         GENERATE("P5\n# comment\n3 3\n65535\n0123456789abcdefgh"s, "P2\n3 2 # comment\n100\n10 20 30\n40 50 60\n"s);
@@ -176,7 +176,7 @@ constexpr std::size_t padding_for_tables = 2100000;
 
 }  // namespace
 
-TEST_CASE("EXR headers that claim much cost little") {
+TEST_CASE("EXR headers that claim much cost little memory and time") {
     const TestFolder folder;
     const auto compression = GENERATE(0, 1, 3, 4, 5, 7, 9);
     const auto tiled = GENERATE(false, true);

@@ -60,7 +60,7 @@ void check_equal(const std::vector<double>& found, const std::vector<double>& ex
 
 }  // namespace
 
-TEST_CASE("full: the scale spans what the source can hold") {
+TEST_CASE("full: the scale spans the source's range of values") {
     const std::vector<double> expected{10 + 3 * 1000 / 65535., 10 + 3 * 1200 / 65535., 10 + 3 * 1500 / 65535.,
                                        10 + 3 * 1600 / 65535.};
     check_equal(displacements(metres()), expected, 1e-6);
@@ -72,7 +72,7 @@ TEST_CASE("full: the scale spans what the source can hold") {
                                           Contains("map.range = \"data\""));
 }
 
-TEST_CASE("data: the scale spans the values that occur, and so do the codes") {
+TEST_CASE("data: the scale and the codes span the values that occur") {
     const MapRange range{MapRange::Kind::data};
     HeightMap map = metres();
     span_values(map, range);
@@ -83,7 +83,7 @@ TEST_CASE("data: the scale spans the values that occur, and so do the codes") {
     CHECK(setup.remarks.empty());
 }
 
-TEST_CASE("two ends: in the map's own units, and beyond them in proportion") {
+TEST_CASE("two ends: they are in the map's own units, and values beyond them are in proportion") {
     const MapRange range{MapRange::Kind::given, 1200, 1500};
     HeightMap map = metres();
     span_values(map, range);
@@ -94,7 +94,7 @@ TEST_CASE("two ends: in the map's own units, and beyond them in proportion") {
     CHECK(setup.remarks.empty());
 }
 
-TEST_CASE("a map of one value has displacement.bias where the scale spans the data") {
+TEST_CASE("a constant map is displaced by displacement.bias if the scale spans the data") {
     HeightMap flat = metres();
     std::fill(flat.values.begin(), flat.values.end(), 0.5F);
     span_values(flat, {MapRange::Kind::data});
@@ -102,7 +102,7 @@ TEST_CASE("a map of one value has displacement.bias where the scale spans the da
     check_equal(machine_displacements(flat, {MapRange::Kind::data}), {10, 10, 10, 10}, 1e-3);
 }
 
-TEST_CASE("a map is noted as using little of its range below an eighth") {
+TEST_CASE("a map that uses less than an eighth of its range gets a remark") {
     const auto remarks = [](float high) {
         HeightMap map;
         map.width = 2;

@@ -57,7 +57,7 @@ TEST_CASE("a 16-bit P5 is big-endian, and its first sample may look like white s
     CHECK(read_text_as(folder, "e.pgm", "P5 1 1 255\r\nAB"s).at(0, 0) == eighth_bit('\n'));
 }
 
-TEST_CASE("a PGM file with something odd about it is read with a remark") {
+TEST_CASE("an unusual PGM file is read with a remark") {
     const TestFolder folder;
     CHECK_THAT(read_text_as(folder, "a.pgm", "P2 1 1 9 1"s).repairs.at(0), Contains("right after its last digit"));
     CHECK_THAT(read_text_as(folder, "a.pgm", "P2 1 1 9 1\n2 3\n"s).repairs.at(0), Contains("4 bytes after"));
@@ -67,7 +67,7 @@ TEST_CASE("a PGM file with something odd about it is read with a remark") {
     CHECK_THAT(read_text_as(folder, "a.png", "P5 1 1 9\n\1"s).repairs.at(0), Contains("named .png but is a PGM"));
 }
 
-TEST_CASE("a wrong PGM file is refused with what is wrong and the value") {
+TEST_CASE("a wrong PGM file is refused with the fault and the value") {
     const TestFolder folder;
     const auto [bytes, message] = GENERATE(table<std::string, std::string>({
         {"P5 0 3 255\n", "the width at byte 3 of the PGM file is \"0\"; it must be a number from 1 to 4096"},
@@ -101,7 +101,7 @@ TEST_CASE("a wrong PGM file is refused with what is wrong and the value") {
     CHECK_THROWS_AS(read_height_map(folder / "bad.pgm"), InputError);
 }
 
-TEST_CASE("what is no file, or has no channels to choose from, is refused") {
+TEST_CASE("a path that is not a file, or a file without channels to choose from, is refused") {
     const TestFolder folder;
     CHECK_THROWS_WITH(read_height_map(folder / "none.exr"), Contains("no such map file"));
     CHECK_THROWS_WITH(read_height_map(folder / "."), Contains("not a regular file"));
@@ -134,7 +134,7 @@ TEST_CASE("grey PNG maps of every depth are sample / maximum, top row at the lar
     }
 }
 
-TEST_CASE("colour and alpha in a PNG map: luma, exact where grey, alpha ignored, both said") {
+TEST_CASE("a colour PNG map is read as luma, exact for grey, alpha is ignored, both are reported") {
     const TestFolder folder;
     write_png(folder / "grey.png", {1, 1, 8, PNG_COLOR_TYPE_RGB, {77, 77, 77}, {}});
     HeightMap map = read_height_map(folder / "grey.png");
@@ -160,7 +160,7 @@ TEST_CASE("colour and alpha in a PNG map: luma, exact where grey, alpha ignored,
           std::vector<float>{eighth_bit(1), eighth_bit(2), eighth_bit(3), eighth_bit(4)});
 }
 
-TEST_CASE("a PNG map's transparent colour is ignored, and said") {
+TEST_CASE("a PNG map's transparent colour is ignored and reported") {
     const TestFolder folder;
     write_png(folder / "a.png", {2, 1, 8, PNG_COLOR_TYPE_GRAY, {7, 9}, {}});
     std::string bytes = read_all(folder / "a.png");
@@ -182,7 +182,7 @@ TEST_CASE("an interlaced PNG equals the plain one") {
     CHECK(read_height_map(folder / "plain.png").values == read_height_map(folder / "adam7.png").values);
 }
 
-TEST_CASE("a damaged PNG map is refused, a longer one remarked on") {
+TEST_CASE("a damaged PNG map is refused, one with extra bytes is read with a remark") {
     const TestFolder folder;
     write_png(folder / "a.png", {2, 2, 8, PNG_COLOR_TYPE_GRAY, {0, 51, 102, 255}, {}});
     const std::string good = read_all(folder / "a.png");

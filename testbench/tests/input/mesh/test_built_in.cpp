@@ -87,7 +87,7 @@ TEST_CASE("a cylinder's middle column faces -y") {
     CHECK(mesh.vertices[2].tangent.x == Approx(1));
 }
 
-TEST_CASE("a sphere is closed, outward, and has no flat triangle") {
+TEST_CASE("a sphere is closed, faces outward and has no flat triangle") {
     const auto columns = GENERATE(3, 8, 33);
     const auto rows = GENERATE(2, 3, 16);
     const BaseMesh mesh = make_sphere(columns, rows, 0.5);
@@ -114,7 +114,7 @@ TEST_CASE("a sphere is closed, outward, and has no flat triangle") {
     CHECK_THAT(mesh.repairs[0], Contains("At 2 point(s) the directions of dp/du cancel"));
 }
 
-TEST_CASE("built-in meshes refuse what they cannot be, naming the key") {
+TEST_CASE("built-in meshes refuse invalid parameters and name the key") {
     const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
     CHECK_THROWS_WITH(make_plane(0, 3, 2, 2), Contains("mesh.columns = 0") && Contains("1 to 4096"));
     CHECK_THROWS_WITH(make_plane(3, 4097, 2, 2), Contains("mesh.rows = 4097"));
@@ -129,11 +129,11 @@ TEST_CASE("built-in meshes refuse what they cannot be, naming the key") {
     CHECK_THROWS_WITH(make_plane(4096, 489, 2, 2), Contains("4005888") && Contains("4000000"));
 }
 
-TEST_CASE("a plane of the greatest size keeps its promises") {
+TEST_CASE("a plane of the greatest size is made") {
     CHECK(make_plane(4096, 488, 1e30, 1e-30).triangles.size() == 3997696);
 }
 
-TEST_CASE("the dispatcher makes what the job says") {
+TEST_CASE("the mesh source of the job is dispatched") {
     Job::Mesh job;
     CHECK(make_base_mesh(job, "").triangles.size() == 18);
     job.source = MeshSource::cylinder;

@@ -47,7 +47,7 @@ TEST_CASE("the shared meshes load") {
     }
 }
 
-TEST_CASE("the shared meshes are what tinyobjloader reads") {
+TEST_CASE("the shared meshes equal those read by tinyobjloader") {
     for (const fs::path& file : files_in("meshes")) {
         if (!is_obj(file))
             continue;

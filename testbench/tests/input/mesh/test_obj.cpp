@@ -67,7 +67,7 @@ TEST_CASE("a good quad loads without a repair") {
     CHECK(mesh.vertices[2].texture == glm::dvec2(1, 1));
 }
 
-TEST_CASE("the forms an OBJ may take all give the same mesh") {
+TEST_CASE("all forms of an OBJ file give the same mesh") {
     const std::string forms[] = {
         square + "f -4/-4/-1 -3/-3/-1 -2/-2/-1 -1/-1/-1\n",
         square + "f 1/1 2/2 \\\n 3/3 4/4",
@@ -98,7 +98,7 @@ TEST_CASE("the forms an OBJ may take all give the same mesh") {
     }
 }
 
-TEST_CASE("numbers are those of the text, correctly rounded") {
+TEST_CASE("numbers are correctly rounded from the text") {
     std::mt19937 random(3);
     std::uniform_real_distribution<double> mantissa(-10, 10), exponent(-20, 30);
     for (int i = 0; i < 1000; ++i) {
@@ -147,7 +147,7 @@ TEST_CASE("bad input ends in an error with file and line") {
     }
 }
 
-TEST_CASE("corners without texture coordinates get the map laid over the mesh, with a repair") {
+TEST_CASE("corners without texture coordinates get a projected map, with a repair") {
     const BaseMesh mesh = parse("v 0 0 5\nv 4 0 5\nv 0 2 5\nf 1 2 3\n");
     require_complete(mesh);
     CHECK_THAT(all_repairs(mesh), StartsWith("3 vertices have no texture coordinates") && Contains("along z"));
@@ -157,7 +157,7 @@ TEST_CASE("corners without texture coordinates get the map laid over the mesh, w
                StartsWith("1 vertices have no texture coordinates, first used in line 10"));
 }
 
-TEST_CASE("flat triangles are dropped and counted, nothing left is an error") {
+TEST_CASE("flat triangles are dropped and counted, an empty result is an error") {
     const BaseMesh mesh = parse(square + "f 1/1 2/2 3/3\nf 1/1 1/1 2/2\nf 1/1 3/3 4/4\nf 1/1 2/2 1/1 2/2\n");
     CHECK(mesh.triangles.size() == 2);
     CHECK(mesh.dropped_degenerate == 3);
@@ -167,14 +167,14 @@ TEST_CASE("flat triangles are dropped and counted, nothing left is an error") {
     CHECK_THROWS_WITH(parse("v 0 0 0\nv 1e-200 0 0\nv 0 1e-200 0\nf 1 2 3\n"), Contains("smaller than"));
 }
 
-TEST_CASE("an n-gon that names a point twice in a row takes it once") {
+TEST_CASE("an n-gon that repeats a point in succession uses it once") {
     const BaseMesh mesh = parse(square + "f 1/1 2/2 2/2 3/3 4/4 1/1\n");
     CHECK(mesh.triangles.size() == 2);
     CHECK(signed_area(mesh) == Approx(1));
     CHECK_THAT(all_repairs(mesh), Contains("name one point twice in a row"));
 }
 
-TEST_CASE("repeated and turned-over triangles are dropped, two-sided sheets kept") {
+TEST_CASE("repeated and turned-over triangles are dropped, two-sided sheets are kept") {
     const BaseMesh repeated = parse(square + "f 1/1 2/2 3/3\nf 2/2 3/3 1/1\n");
     CHECK(repeated.triangles.size() == 1);
     CHECK(repeated.dropped_duplicate == 1);
@@ -188,7 +188,7 @@ TEST_CASE("repeated and turned-over triangles are dropped, two-sided sheets kept
     CHECK_THAT(all_repairs(sheet), Contains("more than one normal"));
 }
 
-TEST_CASE("T-junctions, crowded edges and changes of winding are told") {
+TEST_CASE("T-junctions, non-manifold edges and changes of winding are reported") {
     const BaseMesh junction =
         parse("v 0 0 0\nv 2 0 0\nv 1 2 0\nv 1 0 0\nv 0 -2 0\nv 2 -2 0\nf 1 2 3\nf 1 5 4\nf 4 5 6\nf 4 6 2\n");
     CHECK_THAT(all_repairs(junction), Contains("1 border edge(s) have another vertex"));
@@ -200,7 +200,7 @@ TEST_CASE("T-junctions, crowded edges and changes of winding are told") {
     require_complete(twisted);
 }
 
-TEST_CASE("given normals are made unit, without length they are computed") {
+TEST_CASE("given normals are normalised, and computed if their length is zero") {
     const BaseMesh mesh =
         parse(square + "vn 0 0 0\nvn 0 0 1e-320\nvn 1e38 1e38 1e38\nvn 0 3 4\nf 1/1/2 2/2/3 3/3/4 4/4/5\n");
     require_complete(mesh);
@@ -213,7 +213,8 @@ TEST_CASE("given normals are made unit, without length they are computed") {
     CHECK_THAT(all_repairs(parse(square + "vn 0 0 -1\nf 1/1/2 2/2/2 3/3/2\n")), Contains("against their winding"));
 }
 
-TEST_CASE("computed normals are those of the surface, across texture seams, and do not depend on the cut") {
+TEST_CASE(
+    "computed normals are those of the surface, also across texture seams, and do not depend on the triangulation") {
     // a cube of quads: the three faces at each corner have equal angles, whichever diagonal cuts them
     const std::string cube =
         "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\nvt 0 0\nvt 1 0\nvt 1 1\nvt "
@@ -238,7 +239,7 @@ TEST_CASE("computed normals are those of the surface, across texture seams, and 
     }
 }
 
-TEST_CASE("mirrored texture turns the handedness, mixed points take the majority") {
+TEST_CASE("a mirrored texture flips the handedness, mixed points take the majority") {
     const BaseMesh mirrored = parse(square + "vt -1 0\nvt -1 1\nf 1/1/1 2/5/1 3/6/1\n");
     CHECK(mirrored.vertices[0].handedness == -1);
     CHECK(mirrored.vertices[0].tangent == glm::dvec3(-1, 0, 0));
@@ -255,7 +256,7 @@ TEST_CASE("a triangle without area in texture space gives perpendicular tangents
     CHECK_THAT(all_repairs(mesh), Contains("1 triangle(s) have no area in texture space"));
 }
 
-TEST_CASE("a mesh without any area in texture space gets the map laid over it") {
+TEST_CASE("a mesh without any area in texture space gets a projected map") {
     const BaseMesh mesh = parse(square + "f 1/1 2/1 3/1 4/1\n");
     require_complete(mesh);
     CHECK_THAT(all_repairs(mesh), Contains("No triangle has an area in texture space: the map was laid over the "
@@ -329,7 +330,7 @@ TEST_CASE("large polygons, convex and not, are cut") {
     }
 }
 
-TEST_CASE("a large convex polygon is cut without a corner that most of its triangles share") {
+TEST_CASE("no corner of a large convex polygon is shared by most of its triangles") {
     for (const std::size_t n : {std::size_t{9}, std::size_t{10}, std::size_t{1000}, std::size_t{65536}}) {
         std::vector<glm::dvec2> outline;
         for (std::size_t i = 0; i < n; ++i) {
@@ -353,7 +354,7 @@ TEST_CASE("a large convex polygon is cut without a corner that most of its trian
     }
 }
 
-TEST_CASE("outlines that cross themselves or are not plane load with a repair") {
+TEST_CASE("outlines that cross themselves or are not planar load with a repair") {
     for (const std::string& text :
          {polygon({{0, 0}, {1, 1}, {1, 0}, {0, 1}}), polygon({{0, 0}, {3, 3}, {3, 0}, {0, 1}}),
           polygon({{0, 1}, {0.59, -0.81}, {-0.95, 0.31}, {0.95, 0.31}, {-0.59, -0.81}})}) {
@@ -368,7 +369,7 @@ TEST_CASE("outlines that cross themselves or are not plane load with a repair") 
     CHECK_THAT(all_repairs(bent), Contains("not plane"));
 }
 
-TEST_CASE("limits are named") {
+TEST_CASE("files beyond a limit are refused with the limit") {
     std::string face = "f";
     for (std::size_t i = 0; i < 1'000'000; ++i)
         face += i % 3 == 0 ? " 1" : i % 3 == 1 ? " 2" : " 3";
@@ -390,7 +391,7 @@ TEST_CASE("limits are named") {
     CHECK(much < largest_cutting_work);
 }
 
-TEST_CASE("words that are not read are skipped and told") {
+TEST_CASE("unknown keywords are skipped and reported") {
     const BaseMesh mesh = parse("hello\n" + square + "\x01\x02 3\nf 1/1 2/2 3/3\nsurf 0 1 0 1 1 2 3 4\n");
     CHECK_THAT(all_repairs(mesh),
                Contains("3 line(s) begin with a word that is not read") && Contains("the first is line 1: 'hello'."));
@@ -448,7 +449,7 @@ TEST_CASE("damaged files end in a mesh or an error") {
     CHECK(loaded < 400);
 }
 
-TEST_CASE("random triangle soups of all sizes keep the promises of a base mesh") {
+TEST_CASE("random triangle soups of all sizes meet the guarantees of a base mesh") {
     std::mt19937 random(2);
     std::size_t loaded = 0;
     for (int run = 0; run < 2000; ++run) {
@@ -478,7 +479,7 @@ TEST_CASE("random triangle soups of all sizes keep the promises of a base mesh")
     CHECK(loaded > 1900);
 }
 
-TEST_CASE("a mesh file of another kind is named, with what to do") {
+TEST_CASE("a mesh file of another kind is refused with a remedy") {
     using namespace std::string_literals;
     std::string binary_stl(84 + 2 * 50, '\x3f');
     binary_stl.replace(0, 5, "solid");  // as some exporters begin it

@@ -75,7 +75,7 @@ std::string parse_error(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("patches: the teapot has 32 patches and 992 triangles, closed but for its own openings") {
+TEST_CASE("patches: the teapot has 32 patches and 992 triangles, closed except for its own openings") {
     const BezierPatches patches = teapot();
     CHECK(patches.patches.size() == 32);
     CHECK(patches.points.size() == 306);
@@ -95,7 +95,7 @@ TEST_CASE("patches: the teapot has 32 patches and 992 triangles, closed but for 
             CHECK(largest_of(v.normal - glm::dvec3(0, 0, v.position.z > 1 ? 1 : -1)) < 1e-15);
 }
 
-TEST_CASE("patches: the teapot is the one of the shared data") {
+TEST_CASE("patches: the teapot equals that of the shared data") {
     const fs::path file = shared_data("meshes/teapot_n4.obj");
     if (file.empty())
         return;
@@ -134,7 +134,7 @@ TEST_CASE("patches: a bilinear patch is evaluated exactly, and more finely on re
     }
 }
 
-TEST_CASE("patches: a patch against Bernstein's polynomials") {
+TEST_CASE("patches: a patch agrees with Bernstein's polynomials") {
     const BezierPatches patches = one_patch(
         [](int i, int j) { return glm::dvec3(i + 0.3 * j * j, j - 0.2 * i * j, 0.5 * i * i - 0.7 * j * (i - 1)); });
     const auto bernstein = [](double t) {
@@ -160,7 +160,7 @@ TEST_CASE("patches: a patch against Bernstein's polynomials") {
     }
 }
 
-TEST_CASE("patches: a border shared the other way round, or by another side, is the same to the last bit") {
+TEST_CASE("patches: a border shared in reverse, or by another side, is bit-identical") {
     // Awkward numbers; the second patch meets border u = 1 of the first with its border v = 0, reversed.
     const auto at = [](int i, int j) {
         return glm::dvec3(0.1 * i + 0.07 * j, 0.3 * j + 0.01 * i * i, 0.123 * i * j - 0.37 * i + 1 / 3.0);
@@ -203,7 +203,7 @@ TEST_CASE("patches: a collapsed border at any of the four sides has the limit's 
     }
 }
 
-TEST_CASE("patches: a cusp gets a smooth normal, and a repair says so") {
+TEST_CASE("patches: a cusp gets a smooth normal, with a repair") {
     // Two rows of control points collapsed: both derivatives vanish there.
     const BezierPatches patches =
         one_patch([](int i, int j) { return j < 2 ? glm::dvec3(0) : glm::dvec3(i, j, 0.1 * i * j); });
@@ -212,7 +212,7 @@ TEST_CASE("patches: a cusp gets a smooth normal, and a repair says so") {
     CHECK_THAT(mesh.repairs.at(1), Contains("4 vertices lie on cusps"));
 }
 
-TEST_CASE("patches: what is no mesh is refused") {
+TEST_CASE("patches: patches that give no mesh are refused") {
     const BezierPatches point = one_patch([](int, int) { return glm::dvec3(1, 2, 3); });
     CHECK_THROWS_WITH(make_patch_mesh(point, 4, 4, "p.txt"), Contains("p.txt: no triangle is left"));
     const BezierPatches line = one_patch([](int i, int j) { return glm::dvec3(i + j); });
@@ -227,7 +227,7 @@ TEST_CASE("patches: what is no mesh is refused") {
     CHECK_THROWS_WITH(make_base_mesh(job, "."), Contains("not a regular file"));
 }
 
-TEST_CASE("patches: text as it may come loads") {
+TEST_CASE("patches: text with other line ends, spaces and number forms loads") {
     const BezierPatches patches = one_patch([](int i, int j) { return glm::dvec3(i, j, i * j); });
     const std::string text = text_of(patches);
     CHECK(parse_error(text).empty());

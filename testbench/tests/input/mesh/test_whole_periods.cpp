@@ -71,7 +71,7 @@ BaseMesh stretched(BaseMesh mesh, const glm::dvec2& factor) {
 
 }  // namespace
 
-TEST_CASE("a chart goes down, or up, by one number of periods on the axes that repeat") {
+TEST_CASE("a chart is shifted by a whole number of periods on the repeating axes") {
     BaseMesh mesh = make_plane(1, 1, 2, 2);  // u, v: 0..1
     const BaseMesh low = bring_down_texture(shifted(mesh, {1234, -7}), {true, true}, {16, 16});
     for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
@@ -82,7 +82,7 @@ TEST_CASE("a chart goes down, or up, by one number of periods on the axes that r
     CHECK(half.triangles == mesh.triangles);
 }
 
-TEST_CASE("charts are shifted each by itself, and vertices of equal position and texture belong to one") {
+TEST_CASE("each chart is shifted separately, and vertices of equal position and texture belong to one chart") {
     const auto triangle = [](double u, std::uint32_t first) {
         BaseMesh mesh;
         for (const glm::dvec2 t : {glm::dvec2(0, 0), glm::dvec2(1, 0), glm::dvec2(0, 1)}) {
@@ -106,7 +106,7 @@ TEST_CASE("charts are shifted each by itself, and vertices of equal position and
     CHECK(both(4).vertices[3].texture.x == 1);
 }
 
-TEST_CASE("a chart wider than the format holds is shifted triangle by triangle") {
+TEST_CASE("a chart wider than the format is shifted triangle by triangle") {
     const BaseMesh mesh = stretched(make_plane(40, 1, 2, 2), {40, 1});
     const BaseMesh low = bring_down_texture(mesh, {true, false}, {4, 1});
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
@@ -121,7 +121,7 @@ TEST_CASE("a chart wider than the format holds is shifted triangle by triangle")
         CHECK(vertex.texture.x <= 2);
 }
 
-TEST_CASE("a mesh whose coordinates begin thousands of periods away leaves the same mesh") {
+TEST_CASE("a mesh with coordinates thousands of periods away gives the same result") {
     const HeightMap map = noise_map(64, 64, 3);
     const BaseMesh cylinder = make_cylinder(12, 4, 1, 2);
     const Run here(tiling_job(), cylinder, map), far(tiling_job(), shifted(cylinder, {5000, -3000}), map);
@@ -131,7 +131,7 @@ TEST_CASE("a mesh whose coordinates begin thousands of periods away leaves the s
         CHECK(here.mesh.triangles[k].corners[0].texture == far.mesh.triangles[k].corners[0].texture);
 }
 
-TEST_CASE("triangles shifted by themselves decide as those of one chart, and no seam opens") {
+TEST_CASE("triangles shifted separately decide as those of one chart, and no seam opens") {
     const HeightMap map = noise_map(32, 32, 5);
     const BaseMesh base = stretched(make_plane(9, 7, 2, 2), {10.25, 9.5});  // edges cross periods anywhere
     Job one = tiling_job(), each = tiling_job();
@@ -152,13 +152,13 @@ std::string refusal(const Job& job, const BaseMesh& base, const HeightMap& map) 
 
 }  // namespace
 
-TEST_CASE("one triangle of more periods than the format holds is refused") {
+TEST_CASE("a triangle of more periods than the format holds is refused") {
     const BaseMesh base = stretched(make_plane(1, 1, 2, 2), {100, 1});
     CHECK_THAT(refusal(tiling_job(), base, noise_map(64, 64, 1)),
                Contains("beyond the 0..4096") && Contains("repeat the map less often"));
 }
 
-TEST_CASE("a lattice that reaches beyond the format is refused, and a smaller spacing named") {
+TEST_CASE("a lattice that extends beyond the format is refused, and a smaller spacing is suggested") {
     const HeightMap map = noise_map(3000, 4, 1);
     const auto refused = [&](std::int64_t spacing) {
         return refusal({}, make_lattice({3000, 4}, {false, false}, spacing, 2, 2), map);

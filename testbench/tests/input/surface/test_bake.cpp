@@ -34,7 +34,7 @@ Job::Map repeat_u() {
 
 }  // namespace
 
-TEST_CASE("bake: texel centres of the domain, from the bottom row up") {
+TEST_CASE("bake: heights are sampled at texel centres of the domain, from the bottom row up") {
     const BakedMap map = bake_heights(surface("[domain]\nx = [0, 4]\ny = [10, 12]\n[quadric]\nshape = \"general\"\n"
                                               "coefficients = [0, 0, 0, 0, 0, 0, 1, 100, -1, 0]\n"),
                                       4, 2);
@@ -42,7 +42,7 @@ TEST_CASE("bake: texel centres of the domain, from the bottom row up") {
     CHECK(map.absent + map.raised + map.uncovered + map.overlaps == 0);
 }
 
-TEST_CASE("bake: a symmetric surface gives a symmetric map, to the last bit") {
+TEST_CASE("bake: a symmetric surface gives a bit-exactly symmetric map") {
     const BakedMap map = bake_heights(
         surface("[domain]\nx = [-0.7, 0.7]\ny = [-0.3, 0.3]\n[quadric]\nshape = \"sphere\"\nradius = 0.9\n"), 37, 22);
     for (int y = 0; y < 22; ++y)
@@ -52,7 +52,7 @@ TEST_CASE("bake: a symmetric surface gives a symmetric map, to the last bit") {
         }
 }
 
-TEST_CASE("bake: where the quadric is absent or too low the map has its floor") {
+TEST_CASE("bake: the map has its floor value where the quadric is absent or too low") {
     const std::string text = "[quadric]\nshape = \"sphere\"\nradius = 0.5\ncentre = [0, 0, 0.1]\n";
     const BakedMap open = bake_heights(surface(text), 64, 64);
     double lowest = 1;
@@ -82,7 +82,7 @@ TEST_CASE("bake: where the quadric is absent or too low the map has its floor") 
     CHECK(floored.raised + floored.absent == raised);
 }
 
-TEST_CASE("bake: a quadric that is nowhere is refused with its line") {
+TEST_CASE("bake: a quadric without a point over the domain is refused with its line") {
     CHECK_THROWS_WITH(
         bake_heights(surface("\n[quadric]\nshape = \"sphere\"\nradius = 0.1\ncentre = [5, 0, 0]\n"), 8, 8),
         Contains("s.toml:2: the quadric is nowhere: none of 8 x 8"));
@@ -123,7 +123,7 @@ TEST_CASE("bake: over a cylinder, every texel displaces its point onto the spher
         }
 }
 
-TEST_CASE("bake: root chooses among the two sides of a quadric") {
+TEST_CASE("bake: root chooses between the two sides of a quadric") {
     QuadricSurface ball = sphere(2, {0, 0, 0.5});
     const BaseMesh plane = make_plane(1, 1, 2, 2);
     const auto centre = [&](Root root) {
@@ -135,7 +135,7 @@ TEST_CASE("bake: root chooses among the two sides of a quadric") {
     CHECK(centre(Root::nearest) == Approx(-1.5));
 }
 
-TEST_CASE("bake: texels without a triangle take the nearest covered one's value, round the map where it repeats") {
+TEST_CASE("bake: texels without a triangle take the value of the nearest covered texel, across borders that repeat") {
     // One triangle over the lower left part; its plane is z = 0, and texture = position.
     const std::string text =
         "v 0 0 0\nv 0.5 0 0\nv 0 0.5 0\nvt 0 0\nvt 0.5 0\nvt 0 0.5\nvn 0 0 1\nf 1/1/1 2/2/1 3/3/1\n";
@@ -155,7 +155,7 @@ TEST_CASE("bake: texels without a triangle take the nearest covered one's value,
     CHECK(at(repeated, 2, 0) == at(repeated, 1, 0));
 }
 
-TEST_CASE("bake: where triangles overlap the first counts, and it is told") {
+TEST_CASE("bake: of overlapping triangles the first is used, and the overlap is reported") {
     // Two sheets with the same texture coordinates, the second higher.
     const std::string sheets =
         "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"

@@ -54,7 +54,7 @@ TEST_CASE("surface file: the examples are read") {
     CHECK(std::holds_alternative<QuadricSurface>(read_surface(examples / "barrel.toml").shape));
 }
 
-TEST_CASE("surface file: every key has its meaning") {
+TEST_CASE("surface file: every key has its effect") {
     const auto shape = [](const std::string& keys) {
         return std::get<QuadricSurface>(parse_surface(quadric(keys), "s.toml").shape);
     };
@@ -76,7 +76,7 @@ TEST_CASE("surface file: every key has its meaning") {
     CHECK(error_of(nurbs("knots_u", "knots_u = [0, 0.5, 1, 2, 3, 4, 5]")).empty());  // not clamped
 }
 
-TEST_CASE("surface file: a long row of numbers is no deep key") {
+TEST_CASE("surface file: a long row of numbers is not a deep key") {
     std::string row = "[0.5";
     for (int k = 0; k < 30; ++k)
         row += ", 0.5, -1.25e-1, 0.75";
@@ -98,7 +98,7 @@ TEST_CASE("surface file: a long row of numbers is no deep key") {
     CHECK_THAT(error_of(quoted + " = 1\n"), Contains("dots in one line"));
 }
 
-TEST_CASE("surface file: faults of a quadric are told with file and line") {
+TEST_CASE("surface file: faults of a quadric are reported with file and line") {
     expect_refusals(
         {
             {"", {"s.toml: there is no surface"}},
@@ -142,7 +142,7 @@ TEST_CASE("surface file: faults of a quadric are told with file and line") {
     CHECK_THROWS_WITH(read_surface("."), Contains("is a folder"));
 }
 
-TEST_CASE("surface file: faults of a NURBS patch are told with file and line") {
+TEST_CASE("surface file: faults of a NURBS patch are reported with file and line") {
     expect_refusals(
         {
             {nurbs("degree_u", ""), {"s.toml:1:1: [nurbs] has no `degree_u`"}},

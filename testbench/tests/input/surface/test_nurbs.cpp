@@ -90,7 +90,7 @@ double bernstein(std::size_t degree, std::size_t i, double t) {
 
 }  // namespace
 
-TEST_CASE("nurbs: basis functions are not negative and sum to one, wherever and whatever the knots") {
+TEST_CASE("nurbs: basis functions are not negative and sum to one, for any parameter and knots") {
     CHECK(rc::check([] {
         const auto degree = static_cast<std::size_t>(*rc::gen::inRange(1, 9));
         const std::size_t count = degree + 1 + static_cast<std::size_t>(*rc::gen::inRange(0, 8));
@@ -108,7 +108,7 @@ TEST_CASE("nurbs: basis functions are not negative and sum to one, wherever and 
     }));
 }
 
-TEST_CASE("nurbs: rational patches of any degree are what de Boor's algorithm makes of them") {
+TEST_CASE("nurbs: rational patches of any degree agree with de Boor's algorithm") {
     CHECK(rc::check([] {
         NurbsPatch patch;
         patch.degree_u = static_cast<std::size_t>(*rc::gen::inRange(1, 6));
@@ -129,7 +129,7 @@ TEST_CASE("nurbs: rational patches of any degree are what de Boor's algorithm ma
     }));
 }
 
-TEST_CASE("nurbs: a Bezier patch is its Bernstein form, and meets its corners") {
+TEST_CASE("nurbs: a Bezier patch agrees with its Bernstein form and interpolates its corners") {
     const NurbsPatch patch = bezier(4, 3, {0, 1, 2, 5, -1, 3, 0, 2, 7, 1, 1, -2}, std::vector<double>(12, 1.0));
     CHECK(height_of(patch, 0, 0) == 0);
     CHECK(height_of(patch, 1, 0) == 5);
@@ -145,7 +145,7 @@ TEST_CASE("nurbs: a Bezier patch is its Bernstein form, and meets its corners") 
     }
 }
 
-TEST_CASE("nurbs: the two coordinates of a rational quarter circle lie on the circle") {
+TEST_CASE("nurbs: a rational quarter circle lies on the circle") {
     const double half = std::sqrt(0.5);
     const std::vector<double> weights{1, half, 1, 1, half, 1};
     const NurbsPatch x = bezier(3, 2, {1, 1, 0, 1, 1, 0}, weights), y = bezier(3, 2, {0, 1, 1, 0, 1, 1}, weights);
@@ -160,7 +160,7 @@ TEST_CASE("nurbs: the two coordinates of a rational quarter circle lie on the ci
     CHECK(std::hypot(height_of(p, 0.5, 0), height_of(q, 0.5, 0)) > 1.05);
 }
 
-TEST_CASE("nurbs: a surface is as smooth as its knots let it be") {
+TEST_CASE("nurbs: a surface is as smooth as its knots allow") {
     NurbsPatch patch = bezier(2, 2, {}, {});
     patch.columns = 4;
     patch.degree_u = 2;

@@ -28,7 +28,7 @@ std::optional<double> height(QuadricShape shape, double x, double y, Root root, 
 
 }  // namespace
 
-TEST_CASE("quadric: heights of the named shapes are their equations solved by hand") {
+TEST_CASE("quadric: heights of the named shapes equal their equations solved by hand") {
     const double x = 1.6, y = 2.3, s = 0.3 * 0.3 + 0.3 * 0.3;  // ((x - 1) / 2)^2 + ((y - 2) / 1)^2
     using Shape = QuadricShape;
     CHECK(height(Shape::ellipsoid, x, y, Root::highest).value() == Approx(3 + 0.5 * std::sqrt(1 - s)).epsilon(1e-15));
@@ -52,7 +52,7 @@ TEST_CASE("quadric: heights of the named shapes are their equations solved by ha
     CHECK(make_quadric(Shape::paraboloid, {0, 0, 0}, {1, 1, -2}, 2, 0).linear.z == -0.5);
 }
 
-TEST_CASE("quadric: what is found lies on the quadric, and what is not is not there") {
+TEST_CASE("quadric: a root found is on the quadric, and no root is missed") {
     CHECK(rc::check([] {
         Quadric q;
         const glm::dvec3 diagonal = random_vector(2), mixed = random_vector(1);
@@ -85,7 +85,7 @@ TEST_CASE("quadric: what is found lies on the quadric, and what is not is not th
     }));
 }
 
-TEST_CASE("quadric: both roots as near, the one along the normal counts, and far ones do not") {
+TEST_CASE("quadric: of two equally near roots the one along the normal is taken, roots beyond 1e6 are not") {
     const Quadric sphere = make_quadric(QuadricShape::ellipsoid, {0.1, 0.2, 0}, glm::dvec3(0.7), 2, 0);
     for (int k = 0; k < 60; ++k) {
         const std::optional<double> t = intersect(sphere, {0.01 * k, 0.3, 0}, {0, 0, 1}, Root::nearest);

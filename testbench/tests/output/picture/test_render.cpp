@@ -79,7 +79,7 @@ TEST_CASE("A sphere's silhouette is a disc of the right radius and centre") {
     CHECK(inside != Style{}.background);
 }
 
-TEST_CASE("The side towards the key light is the brighter one") {
+TEST_CASE("The side that faces the key light is brighter") {
     const Image image = render(make_sphere({0, 0, 0}), look_down(4, 120, 120, 120), Style{});
     CHECK(brightness(image, 60 - 15, 60 - 15) > brightness(image, 60 + 15, 60 + 15) + 60);
     Style other;
@@ -88,7 +88,7 @@ TEST_CASE("The side towards the key light is the brighter one") {
     CHECK(brightness(turned, 60 - 15, 60 - 15) + 60 < brightness(turned, 60 + 15, 60 + 15));
 }
 
-TEST_CASE("A patch is lit like each of its points, and not by a lamp from which it turns away") {
+TEST_CASE("A patch is lit like each of its points, and not by a light it faces away from") {
     const View view = look_down(4, 120, 120, 120);
     Illumination::Scratch scratch;
     std::vector<ShadingPoint> points(4);
@@ -131,7 +131,7 @@ TEST_CASE("A patch is lit like each of its points, and not by a lamp from which 
     CHECK(light_of({1, 0, 0}).x > light_of({-1, 0, 0}).x + 0.05);
 }
 
-TEST_CASE("A ball over a sheet throws a shadow") {
+TEST_CASE("A sphere above a sheet casts a shadow") {
     RenderMesh mesh = make_square();
     RenderMesh ball = make_sphere({0, 0, 0}, 32);
     for (const glm::vec3& p : ball.positions)
@@ -210,7 +210,7 @@ TEST_CASE("Lines keep their width at any distance and fade on small triangles") 
     CHECK(Wireframe({glm::dvec3(0), glm::dvec3(0), glm::dvec3(0)}, 1).coverage(0, 0) == 0);
 }
 
-TEST_CASE("Nothing to see gives the background") {
+TEST_CASE("A view of nothing shows the background") {
     const View view = look_down(4, 50, 40, 50);
     CHECK(is_background(render(RenderMesh{}, view, Style{})));
     View away = view;
@@ -223,7 +223,7 @@ TEST_CASE("Nothing to see gives the background") {
     CHECK(render_views(RenderMesh{}, view, {PictureView::overview}, {}).front().image.width == 1600);
 }
 
-TEST_CASE("Collapsed triangles and missing normals do no harm") {
+TEST_CASE("Collapsed triangles and missing normals do not change the picture") {
     RenderMesh mesh = make_square();
     mesh.normals.assign(4, glm::vec3(0));
     mesh.triangles.push_back({{0, 0, 1}, 3, DecidingTest::both});
@@ -235,7 +235,7 @@ TEST_CASE("Collapsed triangles and missing normals do no harm") {
     CHECK(flat.bytes == render(make_square(), view, lines).bytes);
 }
 
-TEST_CASE("Colour tells generation and deciding test") {
+TEST_CASE("Colour shows the generation and the deciding test") {
     const RenderMesh mesh = make_square();
     const View view = look_down(4, 120, 120, 160);
     Style style;
@@ -261,7 +261,7 @@ TEST_CASE("A PNG file decodes to the same pixels") {
     CHECK(bytes == image.bytes);
 }
 
-TEST_CASE("The run's camera sees what the hardware's Transform projects") {
+TEST_CASE("The run's camera projects like the hardware's Transform") {
     Job::Camera camera;
     camera.eye = {1.05, -2.9, 2.45};
     camera.target = {0.2, 0.1, 0.3};
@@ -298,7 +298,7 @@ TEST_CASE("framed() shows all of the mesh, as large as the margin allows") {
     CHECK(framed(view, RenderMesh{}, 320, 240, 0).focal == Approx(50));
 }
 
-TEST_CASE("Over a sheet the key light stands low, else it comes over the viewer's shoulder") {
+TEST_CASE("The key light is low over a sheet, else it comes from behind the viewer") {
     const View view = look_down(4, 64, 48, 50);
     CHECK(choose_key_light(make_square(), view).z == Approx(0.616).margin(1e-3));
     CHECK(choose_key_light(make_square(), view).x < 0);
@@ -306,7 +306,7 @@ TEST_CASE("Over a sheet the key light stands low, else it comes over the viewer'
     CHECK(choose_key_light(RenderMesh{}, view) == Style{}.key_light);
 }
 
-TEST_CASE("A run's mesh comes back in model units, each vertex once") {
+TEST_CASE("A run's mesh is read back in model units, each vertex once") {
     MachineSetup setup;
     setup.model_scale = {4, {10, 20, 30}};
     const auto at = [](int x, int y) {

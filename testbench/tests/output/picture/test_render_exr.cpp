@@ -83,7 +83,7 @@ TEST_CASE("render: an EXR file has the PNG's pixels in linear light") {
     REQUIRE(picture.linear.width == picture.image.width);
     REQUIRE(picture.linear.height == picture.image.height);
     CHECK(largest_difference(picture.linear, picture.image) == 0);
-    SECTION("float: to the bit") {
+    SECTION("float: bit for bit") {
         const ReadBack file = read_back(encode_exr(picture.linear, ExrSamples::single));
         CHECK(file.type == Imf::FLOAT);
         CHECK(file.image.width == picture.image.width);
@@ -113,7 +113,7 @@ TEST_CASE("render: the first row of an EXR file is the upper one") {
     }
 }
 
-TEST_CASE("render: an EXR file says nothing of when and where it was made") {
+TEST_CASE("render: an EXR file does not contain the time and place of its creation") {
     const Picture picture = sample_picture();
     const std::string file = encode_exr(picture.linear, ExrSamples::half);
     CHECK(file == encode_exr(sample_picture().linear, ExrSamples::half));
@@ -123,7 +123,7 @@ TEST_CASE("render: an EXR file says nothing of when and where it was made") {
         CHECK(attributes.find(word) == std::string::npos);
 }
 
-TEST_CASE("render: an overview in linear light is the same overview") {
+TEST_CASE("render: an overview in linear light equals the overview") {
     PictureOptions options;
     options.width = 320;
     const RenderMesh mesh = make_sphere({0, 0, 0}, 24);

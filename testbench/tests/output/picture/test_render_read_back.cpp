@@ -52,7 +52,7 @@ EmittedMesh some_mesh() {
 
 }  // namespace
 
-TEST_CASE("render: a mesh read back from mesh.ply is the run's own, number for number") {
+TEST_CASE("render: a mesh read back from mesh.ply equals the run's own, number for number") {
     const TestFolder here;
     for (const glm::dvec3& centre : {glm::dvec3(0), glm::dvec3(0.1, -7.3, 1e-3), glm::dvec3(1e6, 1.0 / 3, -12345.678)})
         for (const double scale : {1.0, 1.0 / 64, 4096.0}) {
@@ -78,7 +78,7 @@ TEST_CASE("render: a mesh read back from mesh.ply is the run's own, number for n
         }
 }
 
-TEST_CASE("render: positions keep single precision's best wherever the model lies") {
+TEST_CASE("render: positions keep full single precision for any position of the model") {
     const MachineSetup setup = some_setup({1e6, -3e6, 2e6}, 1);
     const EmittedMesh run = some_mesh();
     const RenderMesh mesh = make_render_mesh(run, setup);

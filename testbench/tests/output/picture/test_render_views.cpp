@@ -68,7 +68,7 @@ RenderMesh stopped_row() {
 
 }  // namespace
 
-TEST_CASE("render: a mesh is where its projection says, and nowhere else") {
+TEST_CASE("render: a mesh is drawn at its projection and nowhere else") {
     RenderMesh mesh;
     mesh.positions = {{-0.7f, -0.4f, 0.1f}, {0.9f, -0.2f, -0.3f}, {0.1f, 0.8f, 0.2f}};
     mesh.normals.assign(3, {0, 0, 1});
@@ -109,7 +109,7 @@ TEST_CASE("render: a plane that faces the light is brighter than one that turns 
     CHECK(straight > turned + 20);
 }
 
-TEST_CASE("render: lines run where edges are projected and nowhere else") {
+TEST_CASE("render: lines are drawn along projected edges and nowhere else") {
     const RenderMesh mesh = make_row(4);
     const View view = look_down(4, 400, 160, 160);  // 80 pixels per quad, from x = 40; rows 40 to 120
     const Image plain = one_view(mesh, view, PictureView::shaded, as_seen(view)).image;
@@ -133,7 +133,7 @@ TEST_CASE("render: lines run where edges are projected and nowhere else") {
     CHECK(lines.at(123, 60) == plain.at(123, 60));
 }
 
-TEST_CASE("render: triangles smaller than lines become a tone without pattern") {
+TEST_CASE("render: triangles smaller than lines give an even tone") {
     // 2.3 pixels per quad: full lines would cause moire with the pixels.
     RenderMesh mesh;
     constexpr std::uint32_t side = 80;
@@ -164,7 +164,7 @@ TEST_CASE("render: triangles smaller than lines become a tone without pattern") 
     CHECK(least > 0.75);  // and nothing is black
 }
 
-TEST_CASE("render: each view has its colours, where they belong") {
+TEST_CASE("render: each view has its colours at the right triangles") {
     const RenderMesh mesh = stopped_row();
     const View view = look_down(8, 500, 140, 320);  // 80 pixels per quad from x = 50, rows 30 to 110
     const auto at_quad = [&](const Image& image, int quad) {
@@ -239,7 +239,7 @@ TEST_CASE("render: errors of triangles and of vertices get the ramp's colours") 
                 CHECK(nearest_hue(image.at(80 + 80 * quad + x, 60), paints) == static_cast<std::size_t>(quad));
         CHECK(has_colour(image, error_colour(1), 120));
     }
-    SECTION("unknown: as no error") {
+    SECTION("unknown: drawn as no error") {
         CHECK(nearest_hue(one_view(mesh, view, PictureView::error, options).image.at(200, 60), paints) == 0);
         options.errors = {};
         CHECK(nearest_hue(one_view(mesh, view, PictureView::error, options).image.at(200, 60), paints) == 0);
@@ -258,7 +258,7 @@ TEST_CASE("render: the error ramp falls in lightness all the way") {
     CHECK(error_colour(2) == error_colour(1));
 }
 
-TEST_CASE("render: a legend names what its colours stand for") {
+TEST_CASE("render: a legend names the meaning of its colours") {
     RenderMesh mesh = make_row(5);
     mesh.base_triangles = 4;
     const auto legend_of = [&](PictureView view, const ErrorScale& errors = {}) {
@@ -306,7 +306,7 @@ TEST_CASE("render: the error of most of a mesh ignores a small part") {
     CHECK(error_of_most(mesh, 0.99) == Approx(5));
 }
 
-TEST_CASE("render: a zoom enlarges around the point it is given") {
+TEST_CASE("render: a zoom enlarges around the given point") {
     const RenderMesh mesh = make_square();  // from 20 to 100 in both axes
     const View view = look_down(4, 120, 120, 160);
     PictureOptions options = as_seen(view);
@@ -327,7 +327,7 @@ TEST_CASE("render: a zoom enlarges around the point it is given") {
     CHECK(same.centre == view.centre);
 }
 
-TEST_CASE("render: a view is the same alone and in company") {
+TEST_CASE("render: a view is the same alone and with others") {
     RenderMesh mesh = stopped_row();
     mesh.triangle_errors.assign(mesh.triangles.size(), 0.3f);
     const View view = look_down(8, 200, 90, 120);
@@ -420,7 +420,7 @@ TEST_CASE("render: the overview shows the shaded surface and its triangles by ge
     CHECK(seen.count(0) == 1);
 }
 
-TEST_CASE("render: small and odd sizes and empty meshes do no harm") {
+TEST_CASE("render: small and odd sizes and empty meshes are drawn without an error") {
     const View view = look_down(8, 320, 200, 200);
     for (const int width : {1, 2, 17, least_picture_side})
         for (const int height : {1, 2, 17, least_picture_side}) {
@@ -446,7 +446,7 @@ TEST_CASE("render: small and odd sizes and empty meshes do no harm") {
     CHECK(is_background(behind.image));
 }
 
-TEST_CASE("render: a mesh is seen from very far away as from near") {
+TEST_CASE("render: a mesh looks the same from very far away as from near") {
     const RenderMesh mesh = make_sphere({0, 0, 0}, 96);
     // In single precision the whole mesh would be only a few steps deep.
     const View near = look_down(1e3, 100, 100, 40 * 1e3);

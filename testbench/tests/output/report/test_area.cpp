@@ -44,7 +44,7 @@ unsigned multiplications(const std::string& function) {
 
 }  // namespace
 
-TEST_CASE("area: the datapath's README says how often each function multiplies") {
+TEST_CASE("area: the multiplications of each function are those of the datapath's README") {
     using M = Multiplications;
     CHECK(multiplications("normalise") == M::normalise);
     CHECK(multiplications("bump") + M::normalise == M::bump);
@@ -58,7 +58,7 @@ TEST_CASE("area: the datapath's README says how often each function multiplies")
 }
 
 // A screen point has 48 more bits for N' or N's, 16 for its code, 1 for a vertex's handedness, 2 for a longer tag.
-TEST_CASE("area: a machine of families") {
+TEST_CASE("area: a machine of families has the figures worked out by hand") {
     auto units = area("hardware.design=modern");
     CHECK(units["displace_vertex"].multipliers == 4 + 27);
     CHECK(units["displace_vertex"].register_bits == (204 + 51) + 7 * (300 + 67 + 16 + 48));
@@ -80,7 +80,7 @@ TEST_CASE("area: a machine of families") {
 }
 
 // A base point has 6 + 4 + 96 + 48 + 50 = 204 bits, a displaced one 96 more, a screen point 81 more than that.
-TEST_CASE("area: the default design, by hand") {
+TEST_CASE("area: the default design has the figures worked out by hand") {
     auto units = area();
     // buffer of one; latency 6 and 1 of the map; a code of 16 bits
     CHECK(units["displace_vertex"].register_bits == 204 + 7 * (300 + 16));
@@ -103,7 +103,7 @@ TEST_CASE("area: the default design, by hand") {
     CHECK(units["total"].register_bits == registers);
 }
 
-TEST_CASE("area: what each parameter changes") {
+TEST_CASE("area: each parameter changes the expected figures") {
     auto paper = area();
     CHECK(area("timing.transform_interval=5")["transform"].multipliers == 5);
     CHECK(area("hardware.transform_pipelines=2")["transform"].multipliers == 48);
@@ -134,7 +134,7 @@ TEST_CASE("area: what each parameter changes") {
 }
 
 // 264 x 264 texels: 17 address bits. Three codes per request.
-TEST_CASE("area: the second side of a displacement map has ports and addresses, and the bits are there once") {
+TEST_CASE("area: the second side of a displacement map has its own ports and addresses, its bits count once") {
     const std::string curvature = "hardware.height_test=curvature timing.displacement_map_buffer=2 ";
     auto units = area(curvature + "timing.displacement_map_ports=2 timing.displacement_map_banks=4");
     CHECK(units["displacement_map"].ports == 8);
@@ -149,7 +149,7 @@ TEST_CASE("area: the second side of a displacement map has ports and addresses, 
         CHECK(area(curvature + shared).count("displacement_map_for_tests") == 0);
 }
 
-TEST_CASE("area: three machines have three times one's hardware") {
+TEST_CASE("area: three machines have three times the hardware of one") {
     MachineSetup setup = setup_of(with_settings(timed_job(), "hardware.queue_capacity=40"));
     setup.machines = 3;
     const Simulation three(setup, 1000);

@@ -8,7 +8,7 @@ using Catch::Contains;
 
 // The reports of `tessera compare`: every column has its unit.
 
-TEST_CASE("error.txt: every figure below its heading, in both units") {
+TEST_CASE("error.txt: every figure is below its heading, in both units") {
     MeshError error;
     error.texel = 0.5;
     error.interpolated.reference_to_mesh.max = 2;
@@ -31,7 +31,7 @@ TEST_CASE("error.txt: every figure below its heading, in both units") {
                                    "                3                1              24               8")));
 }
 
-TEST_CASE("error.txt: fewer than one sample a texel is said beside the density") {
+TEST_CASE("error.txt: fewer than one sample per texel is noted beside the density") {
     MeshError error;
     error.reference_density = 4;
     error.mesh_density = 1;

@@ -253,7 +253,7 @@ TEST_CASE("an OBJ file read back holds the mesh, grouped by generation and test"
     CHECK(materials_used == groups);
 }
 
-TEST_CASE("writing twice gives the same bytes, whatever the locale") {
+TEST_CASE("writing twice gives the same bytes in any locale") {
     const TestFolder folder;
     const Sample sample;
     write_obj(folder / "a.obj", sample.mesh, sample.units);
@@ -271,7 +271,7 @@ TEST_CASE("writing twice gives the same bytes, whatever the locale") {
     CHECK(read_all(folder / "a.ply") == read_all(folder / "b.ply"));
 }
 
-TEST_CASE("a mesh of which everything was culled is an empty, valid file") {
+TEST_CASE("a mesh with every triangle culled is an empty, valid file") {
     const TestFolder folder;
     Sample sample;
     for (auto& t : sample.mesh.triangles)
@@ -286,7 +286,7 @@ TEST_CASE("an atomic file appears complete or not at all") {
     const TestFolder folder;
     const fs::path path = folder / "out.bin";
 
-    SECTION("not before commit, and never without") {
+    SECTION("not before commit, and not without it") {
         {
             AtomicFile file(path);
             file.write(std::string(3'000'000, 'x'));
@@ -305,7 +305,7 @@ TEST_CASE("an atomic file appears complete or not at all") {
         CHECK(folder.names().size() == 1);
         CHECK(read_all(path) == content);
     }
-    SECTION("replaces an older one only then") {
+    SECTION("replaces an older file only on commit") {
         write_file(path, "old");
         {
             AtomicFile file(path);
@@ -316,7 +316,7 @@ TEST_CASE("an atomic file appears complete or not at all") {
         CHECK(read_all(path) == "new");
         CHECK(folder.names().size() == 1);
     }
-    SECTION("replaces a link, and never what it leads to") {
+    SECTION("replaces a link and never its target") {
         write_file(folder / "real", "old");
         for (const char* const target : {"real", "nowhere", "."}) {
             fs::remove(path);
@@ -328,7 +328,7 @@ TEST_CASE("an atomic file appears complete or not at all") {
         CHECK(read_all(folder / "real") == "old");
         CHECK(folder.names().size() == 2);
     }
-    SECTION("removes what processes that were killed left unfinished, and nothing else") {
+    SECTION("removes the unfinished files of killed processes and nothing else") {
         const pid_t ended = ::fork();
         if (ended == 0)
             ::_exit(0);
@@ -349,7 +349,7 @@ TEST_CASE("an atomic file appears complete or not at all") {
             CHECK(fs::exists(folder / name / "new-mesh.ply"));
         CHECK(folder.names().size() == others.size() + 2);  // the file that is no folder, and the new file
     }
-    SECTION("two at once for one name do not meet") {
+    SECTION("two files of one name at once do not interfere") {
         AtomicFile one(path), two(path);
         one.write("one");
         two.write("two");
@@ -361,7 +361,7 @@ TEST_CASE("an atomic file appears complete or not at all") {
     }
 }
 
-TEST_CASE("a full disk leaves nothing, and says so") {
+TEST_CASE("a full disk leaves no file and is reported") {
     const TestFolder folder;
     Sample sample;
     const auto once = sample.mesh.triangles;
@@ -390,7 +390,7 @@ TEST_CASE("a full disk leaves nothing, and says so") {
     CHECK(fs::exists(ply));
 }
 
-TEST_CASE("a place that cannot be written is bad input") {
+TEST_CASE("a path that cannot be written is bad input") {
     const TestFolder folder;
     write_file(folder / "file", "here");
     const auto message_of = [](const fs::path& path) {

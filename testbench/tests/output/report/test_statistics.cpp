@@ -74,7 +74,7 @@ EmittedTriangle::Corner corner(std::uint32_t u, std::uint32_t v, std::int32_t z,
 
 // Two base triangles of a plane, each split into four: a mesh of 3 x 3 vertices. 10 passes of three edges; all six
 // edges of the two base triangles split, those of the eight children do not. The children lack all three normals.
-TEST_CASE("statistics: two triangles split once, by hand") {
+TEST_CASE("statistics: two triangles split once have the figures worked out by hand") {
     Job job = full_split_job(1, 1);
     job.map.width = job.map.height = 8;
     TimedRun simulation(setup_of(job));
@@ -148,7 +148,7 @@ TEST_CASE("statistics: two triangles split once, by hand") {
                {"base_point", 6 + 4 + 3 * formats.position.bits + 3 * formats.normal.bits + 2 * formats.texture.bits}});
 }
 
-TEST_CASE("statistics: each counter of the machine in its own figure") {
+TEST_CASE("statistics: each counter of the machine is in its own figure") {
     HandMadeRun run;
     const Figures f = figures_of(run.simulation);
     CHECK(f.words.at("run.mode") == "functional");
@@ -182,7 +182,7 @@ TEST_CASE("statistics: each counter of the machine in its own figure") {
         CHECK(name.rfind("timing", 0) == std::string::npos);  // no cycles are claimed
 }
 
-TEST_CASE("statistics: what every test stopped stands in the emitted triangle, too") {
+TEST_CASE("statistics: emitted triangles record the tests that stopped them") {
     HandMadeRun run;
     std::map<unsigned, int> stopped;
     for (const EmittedTriangle& triangle : run.simulation.monitor.mesh.triangles)
@@ -198,7 +198,7 @@ TEST_CASE("statistics: what every test stopped stands in the emitted triangle, t
 // Displace Vertex in 2, 3, 4 (+ 1 for the map) and Transform in 9, 10, 11, edges in 12, 13, 14; joined in 47. Second
 // round: taken in 50; three normals, which read nothing, are in Displace Vertex from 52 and in Transform from 58;
 // joined in 80, lit in 81, out in 85.
-TEST_CASE("statistics: one triangle's cycles, unit by unit, by hand") {
+TEST_CASE("statistics: one triangle's cycles in each unit are those worked out by hand") {
     TimedRun simulation(one_triangle());
     const Figures f = figures_of(simulation);
     f.require_all("timing", {{"cycles", 86},
@@ -272,7 +272,7 @@ TEST_CASE("statistics: one triangle's cycles, unit by unit, by hand") {
                                         {"spill_bytes", 0}});
 }
 
-TEST_CASE("statistics: what is spilled comes back, in whole records") {
+TEST_CASE("statistics: spilled records are read back whole") {
     Job job = full_split_job(1, 2);
     job.hardware.queue_capacity = 2;
     TimedRun simulation(setup_of(job));
@@ -287,7 +287,7 @@ TEST_CASE("statistics: what is spilled comes back, in whole records") {
                                            {"spill_bytes", 2 * spilled * 197}});
 }
 
-TEST_CASE("statistics as text: JSON by group, CSV a row a figure") {
+TEST_CASE("statistics as text: JSON is by group, CSV has one row per figure") {
     const std::vector<Figure> figures{{"run", "mode", std::string("timed"), "", "to the cycle, or not"},
                                       {"run", "edges", std::uint64_t{18446744073709551615u}, "edge", "tested"},
                                       {"a.b", "change", std::int64_t{-3}, "", "a \"signed\" one"},
@@ -304,7 +304,7 @@ TEST_CASE("statistics as text: JSON by group, CSV a row a figure") {
     CHECK(json["a.b"]["share"]["value"] == 0.25);
 }
 
-TEST_CASE("mesh counts: what triangles share counts once") {
+TEST_CASE("mesh counts: vertices and edges that triangles share count once") {
     const auto a = corner(0, 0, 0, 0), b = corner(8, 0, 0, 0), c = corner(0, 8, 0, 0), d = corner(8, 8, 0, 2);
     EmittedMesh mesh;
     CHECK(count_mesh(mesh).tested_edges() == 0);

@@ -46,7 +46,7 @@ std::string line_of(const std::string& text, const std::string& unit) {
 
 }  // namespace
 
-TEST_CASE("timing tables: each column of a unit") {
+TEST_CASE("timing tables: each column of a unit has its figure") {
     Machine m;
     Activity& a = m.tests.normal_test.activity();
     a.item_in(0);
@@ -76,7 +76,7 @@ TEST_CASE("timing tables: each column of a unit") {
           "        0.00    0.000     0");
 }
 
-TEST_CASE("timing tables: of several who block a unit the one that did so longest is named") {
+TEST_CASE("timing tables: of several units that block a unit the longest is named") {
     Machine m;
     Activity& a = m.tests.calculate_new_u.activity();
     a.set(0, State::blocked, &m.tests.normal_test);
@@ -109,14 +109,14 @@ TEST_CASE("timing tables: queues and joins have a rate and a level, and no state
     CHECK(text.find("collect_tests") == text.rfind("collect_tests"));
 }
 
-TEST_CASE("timing tables: every unit and memory has its line") {
+TEST_CASE("timing tables: every unit and memory has a line") {
     Machine m;
     const std::string text = "\n" + timing_tables(m.pipeline, cycles);
     for (const Unit* unit : m.pipeline.units())
         CHECK(line_of(text, unit_name(*unit)).size() > 50);
 }
 
-TEST_CASE("utilisation: occupied cycles in all, at most all of them") {
+TEST_CASE("utilisation: the share of occupied cycles, at most 1") {
     Machine m;
     work_on(m.pipeline.transform, 250);
     CHECK(utilisation(m.pipeline.transform, cycles) == 0.25);
@@ -124,7 +124,7 @@ TEST_CASE("utilisation: occupied cycles in all, at most all of them") {
     CHECK(utilisation(m.pipeline.transform, 0) == 0);
 }
 
-TEST_CASE("bottleneck: the next limit names all within a per cent of it, in the pipeline's order") {
+TEST_CASE("bottleneck: the next limit names all units within one per cent of it, in pipeline order") {
     Machine m;
     work_on(m.pipeline.transform, 1000);
     work_on(m.tests.view_test, 400);
@@ -147,7 +147,7 @@ TEST_CASE("bottleneck: the next limit names all within a per cent of it, in the 
 
 // The bound is on the run's length, so it depends on the work that remains, not on how far the first limit is ahead:
 // without a unit at 90 % at least half of the cycles remain.
-TEST_CASE("bottleneck: the bound is what remains to be done, and who waits longest is named") {
+TEST_CASE("bottleneck: the bound is that of the other units, and the unit that waits longest is named") {
     Machine m;
     work_on(m.pipeline.lighting, 900);
     work_on(m.pipeline.calculate_new_p, 500);
@@ -185,7 +185,7 @@ TEST_CASE("bottleneck: the only unit that worked has no next limit") {
     CHECK(bottleneck_text(m.pipeline, cycles) == "lighting: 100.0 % of its throughput is used");
 }
 
-TEST_CASE("bottleneck: below 85 % latency binds, and what would help is said") {
+TEST_CASE("bottleneck: below 85 % latency binds, and a remedy is suggested") {
     Machine m;
     work_on(m.pipeline.lighting, 849);
     work_on(m.pipeline.calculate_new_p, 845);
@@ -197,7 +197,7 @@ TEST_CASE("bottleneck: below 85 % latency binds, and what would help is said") {
     Activity& get = m.pipeline.get_triangle.activity();
     get.item_in(0);
     get.item_out(900);  // waiting for other units
-    SECTION("more triangles, where none waits") {
+    SECTION("more triangles, if none waits") {
         get.set(0, State::blocked, &m.pipeline.calculate_new_p);
         get.set(200, State::starved);
         get.finish(cycles);
@@ -208,7 +208,7 @@ TEST_CASE("bottleneck: below 85 % latency binds, and what would help is said") {
               "(get_triangle is starved 80.0 %: more base triangles, a higher hardware.queue_watermark) or "
               "shorter latencies (an item stays 27.5 cycles in transform)");
     }
-    SECTION("larger buffers, where Get Triangle cannot get rid of them") {
+    SECTION("larger buffers, if Get Triangle is blocked") {
         get.set(0, State::blocked, &m.pipeline.calculate_new_p);
         get.set(600, State::starved);
         get.finish(cycles);
@@ -244,7 +244,7 @@ TEST_CASE("bottleneck: of five units that tie one is named") {
     CHECK(find_bottleneck(m.pipeline, cycles).first.names() == "calculate_new_p and 4 others");
 }
 
-TEST_CASE("bottleneck: a machine that did nothing has none") {
+TEST_CASE("bottleneck: an idle machine has none") {
     Machine m;
     CHECK(bottleneck_text(m.pipeline, cycles) == "nothing was done");
     CHECK(find_bottleneck(m.pipeline, cycles).bound() == 0);
@@ -269,7 +269,7 @@ TEST_CASE("timing.txt of one triangle: latency binds") {
 }
 
 // The second machine has no base triangles.
-TEST_CASE("timing.txt of two machines: a table of each, and the bottleneck of the one that was last to finish") {
+TEST_CASE("timing.txt of two machines: a table of each, and the bottleneck of the last one to finish") {
     Job job = timed_job();
     job.mesh.columns = job.mesh.rows = 1;
     job.map.source = MapSource::constant;
@@ -289,7 +289,7 @@ TEST_CASE("timing.txt of two machines: a table of each, and the bottleneck of th
     CHECK(line_of(text, "tessera_1.transform") != "");
 }
 
-TEST_CASE("queue_levels.csv: first cycle of each stretch and its highest level") {
+TEST_CASE("queue_levels.csv: each row has the first cycle of a stretch and its highest level") {
     LevelHistory history;
     history.set(1, 4);
     history.set(3, 2);

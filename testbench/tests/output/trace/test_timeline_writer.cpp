@@ -27,7 +27,7 @@ std::vector<json> events_of(const std::string& text, const std::string& phase) {
     return events;
 }
 
-TEST_CASE("Timeline: a whole small file") {
+TEST_CASE("Timeline: a small file is written exactly") {
     std::ostringstream out;
     TimelineWriter writer(out, 2500);
     const auto track = writer.add_track("Transform");

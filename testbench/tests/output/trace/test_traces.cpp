@@ -83,7 +83,7 @@ struct Timeline {
 
 }  // namespace
 
-TEST_CASE("tracing changes nothing but its own files, and those are the same every time") {
+TEST_CASE("tracing changes only its own files, and these are the same every time") {
     const TestFolder here;
     run_small(here, {});
     const std::map<std::string, std::string> plain = RunFolder(here.path() / "out").files();
@@ -103,7 +103,7 @@ TEST_CASE("tracing changes nothing but its own files, and those are the same eve
     require_same_files(plain, RunFolder(here.path() / "out").files());
 }
 
-TEST_CASE("a window shows the cycles it names, with the values they have in the whole run") {
+TEST_CASE("a window shows its cycles with their values in the whole run") {
     const TestFolder here;
     // Also with random stalls, and with three Tessellation Tests units.
     const auto design =
@@ -147,7 +147,7 @@ TEST_CASE("a window shows the cycles it names, with the values they have in the 
     }
 }
 
-TEST_CASE("a window that the run does not reach shows how the run ends") {
+TEST_CASE("a window after the end of the run shows how the run ends") {
     const TestFolder here;
     const ProgramEnd end = run_small(here, {"--vcd", "--timeline", "--trace", "1000000:1000010"});
     CHECK_THAT(end.out, Contains("before cycle 1000000"));
@@ -157,7 +157,7 @@ TEST_CASE("a window that the run does not reach shows how the run ends") {
           count(statistics_of(here), "run", "triangles_finished"));
 }
 
-TEST_CASE("waveforms count what the statistics count") {
+TEST_CASE("waveforms and statistics have the same counts") {
     const TestFolder here;
     run_small(here, {"--vcd", "--trace", "0:1000000", "--set", "timing.summed_height_table_ports=4"});
     const VcdFile vcd(here.path() / "out/trace.vcd");
@@ -186,7 +186,7 @@ TEST_CASE("waveforms count what the statistics count") {
     }
 }
 
-TEST_CASE("every read request can be counted in the waveforms") {
+TEST_CASE("every read request is counted in the waveforms") {
     const TestFolder here;
     const std::string ports = GENERATE("1", "2", "4");
     const std::string banks = GENERATE("1", "2", "4");
@@ -225,7 +225,7 @@ TEST_CASE("every read request can be counted in the waveforms") {
     }
 }
 
-TEST_CASE("waveforms show what each test compares, and with what") {
+TEST_CASE("waveforms show the two operands that each test compares") {
     const TestFolder here;
     const std::string unit = GENERATE("sum", "area");
     run_small(here, {"--vcd", "--trace", "0:1000000", "--set", "tests.summed_height_unit=" + unit, "--set",
@@ -295,7 +295,7 @@ TEST_CASE("waveforms show what each test compares, and with what") {
     CHECK(view.size() + generation.size() >= 3);
 }
 
-TEST_CASE("waveforms of off-chip memory show what a queue of four triangles spills and gets back") {
+TEST_CASE("waveforms of off-chip memory show the spills and refills of a queue of four triangles") {
     const TestFolder here;
     run_small(here, {"--vcd", "--trace", "0:1000000", "--set", "hardware.queue_capacity=4"});
     const VcdFile vcd(here.path() / "out/trace.vcd");
@@ -324,7 +324,7 @@ TEST_CASE("waveforms of off-chip memory show what a queue of four triangles spil
         CHECK(rest["tessera.off_chip_memory." + std::string(name)].initial == of_memory(name).at(middle * period));
 }
 
-TEST_CASE("only the units named are traced") {
+TEST_CASE("only the named units are traced") {
     const TestFolder here;
     run_small(here, {"--vcd", "--trace-units", "normal,  triangle_queue"});
     for (const auto& [name, signal] : VcdFile(here.path() / "out/trace.vcd").signals) {
@@ -469,7 +469,7 @@ TEST_CASE("a triangle can be followed through the timeline") {
     CHECK((ends["pass_or_tessellate"] > 0) == (design.size() > 1 && design[1] == "hardware.culling=back"));
 }
 
-TEST_CASE("a deadlock leaves its traces, and nothing of a run before it") {
+TEST_CASE("a deadlock leaves its traces and no files of an earlier run") {
     const TestFolder here;
     const std::vector<std::string> stall{
         "--set", "hardware.queue_capacity=4", "--set", "hardware.queue_overflow=stall", "--vcd", "--timeline"};
@@ -488,7 +488,7 @@ TEST_CASE("a deadlock leaves its traces, and nothing of a run before it") {
     CHECK(nlohmann::json::parse(read_all(here.path() / "out/timeline.json")).at("traceEvents").size() > 20);
 }
 
-TEST_CASE("traces that cannot be are refused, and leave nothing") {
+TEST_CASE("invalid traces are refused, and nothing is written") {
     const TestFolder here;
     const auto trace_refused = [&](const Arguments& arguments, const std::vector<std::string>& words) {
         refused(Arguments{"run", "--set", "output.folder=out/of/it"} + arguments, here, words);
@@ -527,7 +527,7 @@ TEST_CASE("a limit that ends a traced run leaves no trace") {
     CHECK(here.names().empty());
 }
 
-TEST_CASE("trace.fst: --fst compresses the waveforms, or says which package is missing") {
+TEST_CASE("trace.fst: --fst compresses the waveforms, or names the missing package") {
     const TestFolder here;
     fs::create_directory(here.path() / "tools");
     const auto run = [&] {

@@ -278,7 +278,7 @@ TEST_CASE("VCD: random signals, pulses, gaps and windows agree with a walk throu
     }
 }
 
-TEST_CASE("VCD: a file much longer than the writer's buffer") {
+TEST_CASE("VCD: a file much longer than the writer's buffer is complete") {
     StimulusMaker maker(1);
     Stimulus stimulus = maker.make(30000);
     stimulus.window = {};
@@ -286,12 +286,12 @@ TEST_CASE("VCD: a file much longer than the writer's buffer") {
     REQUIRE(agrees(stimulus));
 }
 
-TEST_CASE("VCD: the same bytes again") {
+TEST_CASE("VCD: the same signals give the same bytes") {
     StimulusMaker first(7), second(7);
     REQUIRE(first.make(500).write() == second.make(500).write());
 }
 
-TEST_CASE("VCD: a whole small file") {
+TEST_CASE("VCD: a small file is written exactly") {
     std::ostringstream out;
     VcdWriter writer(out, 5000);
     const auto address = writer.add("tessera.memory", "address", 12);
@@ -348,7 +348,7 @@ TEST_CASE("VCD: the timescale is the largest power of ten that divides the perio
     CHECK_THROWS_AS(VcdWriter(out, 0), std::logic_error);
 }
 
-TEST_CASE("VCD: windows at and beyond the ends") {
+TEST_CASE("VCD: windows at and beyond the ends of the run have the right values") {
     Stimulus stimulus;
     stimulus.signals = {{"top", "state", 64}, {"top", "valid", 1}};
     stimulus.cycles = {
@@ -387,7 +387,7 @@ TEST_CASE("VCD: windows at and beyond the ends") {
     CHECK(with(0, ones) == Stamps{{0, true, {}}});
 }
 
-TEST_CASE("VCD: a pulse lasts a cycle, whoever sets the signal") {
+TEST_CASE("VCD: a pulse lasts one cycle, also on a signal that is set directly") {
     Stimulus stimulus;
     stimulus.signals = {{"top", "valid", 1}};
     const Operation pulse{0, true, 0}, high{0, false, 1}, low{0, false, 0};
@@ -412,7 +412,7 @@ TEST_CASE("VCD: a pulse lasts a cycle, whoever sets the signal") {
     CHECK(edges({{1, {high}}, {4, {pulse}}}) == Times{1, 5});
 }
 
-TEST_CASE("VCD: thousands of signals, each under a code of its own") {
+TEST_CASE("VCD: thousands of signals have a code each") {
     Stimulus stimulus;
     for (std::size_t s = 0; s < 10000; ++s) {
         stimulus.signals.push_back(

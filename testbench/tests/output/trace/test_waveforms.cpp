@@ -58,7 +58,7 @@ std::vector<std::pair<std::string, unsigned>> signals_in(const fs::path& save_fi
 
 }  // namespace
 
-TEST_CASE("every signal a save file shows is in the default job's waveforms and changes, but for thresholds") {
+TEST_CASE("every signal of a save file is in the default job's waveforms and changes, except thresholds") {
     const TestFolder here;
     const auto traced = [&](const std::string& design) {
         const std::string folder = design.substr(design.find('=') + 1);
@@ -101,7 +101,7 @@ TEST_CASE("every signal a save file shows is in the default job's waveforms and 
     CHECK(constants == 2 * constant.size());
 }
 
-TEST_CASE("save files depend on no machine and on no file beside them but filters") {
+TEST_CASE("save files depend on no machine and on no other files except filters") {
     const std::regex filter("\\^\\d+ (\\S+)");
     for (const fs::path& view : files_ending_in(".gtkw")) {
         std::set<std::string> filters;
@@ -121,7 +121,7 @@ TEST_CASE("save files depend on no machine and on no file beside them but filter
     }
 }
 
-TEST_CASE("filters name every number as the code does") {
+TEST_CASE("filters name every number as in the code") {
     const std::map<unsigned, std::string> state_names = read_filter("states.txt");
     REQUIRE(state_names.size() == states);
     for (const State state : {State::starved, State::busy, State::waiting_for_memory, State::blocked})
@@ -158,7 +158,7 @@ TEST_CASE("filters name every number as the code does") {
           std::map<unsigned, std::string>{{0, "Tessellation"}, {1, "Lighting"}, {2, "culled"}});
 }
 
-TEST_CASE("every unit has a number of its own, whatever the design") {
+TEST_CASE("every unit has its own number in any design") {
     const TestFolder here;
     std::map<std::string, std::size_t> units_of{{"design=paper", 18}, {"tests_units=3", 30}, {"design=modern", 24}};
     for (const HeightTestKind& kind : height_test_kinds)  // the Curvature Test with a second side of the map
@@ -185,7 +185,7 @@ TEST_CASE("every unit has a number of its own, whatever the design") {
     }
 }
 
-TEST_CASE("scripts/waves opens a run in a view, from where the filters are") {
+TEST_CASE("scripts/waves opens a run in a view, from the folder of the filters") {
     const TestFolder here;
     fs::create_directories(here.path() / "run");
     fs::create_directories(here.path() / "tools");

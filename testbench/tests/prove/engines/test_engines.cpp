@@ -77,7 +77,7 @@ const CaseTable designs(
          "hardware.queue_order=lifo timing.stalls_seed=3 timing.stalls_per_mille=300 "
          "timing.stalls_longest=20"},
         {"one place in Pass or Tessellate", "timing.pass_or_tessellate_buffer=1"},
-        {"stalls longer than a part's way to Pass or Tessellate",
+        {"stalls longer than a part takes to Pass or Tessellate",
          "timing.stalls_seed=3 timing.stalls_per_mille=20 timing.stalls_longest=200"},
     },
     [](const Row& row) {
@@ -109,7 +109,7 @@ std::string chosen(const std::string& settings) {
 
 }  // namespace
 
-TEST_CASE("which engine times a run, and why") {
+TEST_CASE("the engine of a run is chosen with a reason") {
     CHECK(chosen("") == "schedule: this design supports it");
     CHECK(chosen("hardware.height_test=curvature") == "schedule: this design supports it");
     CHECK(chosen("hardware.tests_units=3") == "schedule: this design supports it");
@@ -141,7 +141,7 @@ TEST_CASE("which engine times a run, and why") {
     }
 }
 
-TEST_CASE("a difference between two engines is told by its line") {
+TEST_CASE("a difference between two engines is reported with its line") {
     CHECK(first_difference("a\nb\n", "a\nb\n").empty());
     CHECK(first_difference("a\nb\n", "a\nc\n") == "clocked:  b\nschedule: c");
     CHECK(first_difference("a\n", "a\nc\n") == "clocked:  \nschedule: c");

@@ -285,25 +285,25 @@ void compare_with_document(const std::string& heading, const std::string& found)
 
 }  // namespace
 
-TEST_CASE("faults on streams, functional mode: who catches which") {
+TEST_CASE("faults on streams, functional mode, are caught as documented") {
     compare_with_document("Streams, functional mode", table(Mode::functional, streams, stream_kinds));
 }
 
-TEST_CASE("faults on streams, timed mode: who catches which") {
+TEST_CASE("faults on streams, timed mode, are caught as documented") {
     compare_with_document("Streams, timed mode", table(Mode::timed, streams, stream_kinds));
 }
 
-TEST_CASE("faults at memories, functional mode: who catches which") {
+TEST_CASE("faults at memories, functional mode, are caught as documented") {
     compare_with_document("Memories, functional mode", table(Mode::functional, memories, memory_kinds));
 }
 
-TEST_CASE("faults at memories, timed mode: who catches which") {
+TEST_CASE("faults at memories, timed mode, are caught as documented") {
     compare_with_document("Memories, timed mode", table(Mode::timed, memories, memory_kinds));
 }
 
 // The first edge is the plane's lower side, 32 texels long: its rectangles are 16 texels wide and 1 high. Rows of the
 // table have 33 entries of 4 bytes. In timed mode; functional mode requests one entry at a time.
-TEST_CASE("read checks compare every entry of a rectangle, and name the address of the wrong one") {
+TEST_CASE("read checks compare every entry of a rectangle and name the address of the wrong one") {
     std::vector<std::uint64_t> wrong;
     for (const std::uint64_t corner : {0U, 1U, 2U, 3U}) {
         const Outcome outcome = run(Mode::timed, Fault{FaultKind::bit_flip, summed_height_table, 1, 32 * corner});

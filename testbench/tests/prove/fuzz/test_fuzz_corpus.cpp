@@ -68,7 +68,7 @@ TEST_CASE("fuzz corpus: datapath") {
     run_corpus("datapath");
 }
 
-TEST_CASE("fuzz: the datapath on random bytes") {
+TEST_CASE("fuzz: the datapath holds its guarantees on random bytes") {
     Random random(1);
     for (int k = 0; k < 300; ++k) {
         std::string bytes(static_cast<std::size_t>(random.integer(0, 900)), '\0');
@@ -79,7 +79,7 @@ TEST_CASE("fuzz: the datapath on random bytes") {
     }
 }
 
-TEST_CASE("fuzz corpus: a folder for each target and nothing else, small files, all together below 1 MiB") {
+TEST_CASE("fuzz corpus: a folder for each target and nothing else, with small files, below 1 MiB in total") {
     std::size_t folders = 0;
     std::uintmax_t total = 0;
     for (const auto& entry : fs::recursive_directory_iterator(corpus())) {
@@ -94,7 +94,7 @@ TEST_CASE("fuzz corpus: a folder for each target and nothing else, small files, 
     CHECK(total < std::uintmax_t{1} << 20);
 }
 
-TEST_CASE("fuzz corpus: the checks notice what they are there for") {
+TEST_CASE("fuzz corpus: the checks detect broken guarantees") {
     using fuzz::BrokenPromise;
     CHECK_THROWS_AS(fuzz::promise(false, "kept"), BrokenPromise);
     CHECK_THROWS_AS(fuzz::promise_message("other: text", "file"), BrokenPromise);

@@ -29,7 +29,7 @@ ProgramEnd run_cases(const Arguments& arguments, const std::filesystem::path& fo
 
 }  // namespace
 
-TEST_CASE("random case: from its files it is the same as from memory") {
+TEST_CASE("random case: read from its files it is the same as in memory") {
     const TestFolder here;
     for (std::uint64_t seed = 1; seed <= 40; ++seed) {
         const RandomCase made = make_random_case(seed);
@@ -58,7 +58,7 @@ TEST_CASE("random case: a seed gives the same bytes from every compiler") {
     CHECK(fnv1a(text) == 0xf82d0546fac58ba0U);
 }
 
-TEST_CASE("random cases: meshes of every kind, most of them split") {
+TEST_CASE("random cases: meshes of every kind occur, and most of them are split") {
     std::set<std::string> kinds;
     std::size_t split = 0;
     constexpr std::uint64_t cases = 150;
@@ -75,7 +75,7 @@ TEST_CASE("random cases: meshes of every kind, most of them split") {
     CHECK(split > cases / 2);
 }
 
-TEST_CASE("invariants: what narrow formats put into one place of a folded patch is no crack") {
+TEST_CASE("invariants: parts of a folded patch that narrow formats merge are not cracks") {
     std::uint64_t folded = 0;
     for (const std::uint64_t seed : {141U, 149U, 240U, 403U, 610U, 673U, 729U, 791U, 809U, 898U, 940U, 978U, 987U}) {
         const MachineSetup setup = make_random_case(seed).setup();
@@ -89,7 +89,7 @@ TEST_CASE("invariants: what narrow formats put into one place of a folded patch 
     CHECK(folded > 100);
 }
 
-TEST_CASE("the program leaves a case that tessera runs, and says of a line what it ran") {
+TEST_CASE("the program writes a case that tessera runs, and lists its counts in one line") {
     const TestFolder here;
     const ProgramEnd written = run_cases({"--seed", "5", "--write", "case"}, here.path());
     INFO(written.text());

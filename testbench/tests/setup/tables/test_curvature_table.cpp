@@ -84,7 +84,7 @@ struct CurvatureRecursion {
 
 }  // namespace
 
-TEST_CASE("A quadratic's curvature is in every cell within rounding, and nothing is left of it") {
+TEST_CASE("Every cell has a quadratic's curvature within rounding, and no remainder") {
     QuantisedMap map = empty_map(64, 48, AddressMode::clamp, AddressMode::clamp);
     for (std::uint32_t y = 0; y < 48; ++y) {
         for (std::uint32_t x = 0; x < 64; ++x)
@@ -107,7 +107,7 @@ TEST_CASE("A quadratic's curvature is in every cell within rounding, and nothing
     }
 }
 
-TEST_CASE("What a quadratic leaves is the root of its mean squared error") {
+TEST_CASE("The remainder of a quadratic is its RMS error") {
     Random random(1);
     QuantisedMap map = empty_map(32, 32, AddressMode::repeat, AddressMode::repeat);
     for (std::uint16_t& code : map.codes)
@@ -119,7 +119,7 @@ TEST_CASE("What a quadratic leaves is the root of its mean squared error") {
     CHECK(datapath::pack_curvature(entry_at(table, 16 + 32, 16 + 64, 5)) == datapath::pack_curvature(entry));
 }
 
-TEST_CASE("Cells whose squares lie beyond a clamped map ask for nothing") {
+TEST_CASE("Cells whose squares are beyond a clamped map are zero") {
     Random random(2);
     QuantisedMap map = empty_map(20, 20, AddressMode::clamp, AddressMode::clamp);
     for (std::uint16_t& code : map.codes)
@@ -134,8 +134,7 @@ TEST_CASE("Cells whose squares lie beyond a clamped map ask for nothing") {
     CHECK(datapath::pack_curvature(entry_at(table, 16, 16, 3)) != 0);
 }
 
-TEST_CASE(
-    "At a clamped border a cell sees the border go on, by the root of the share of its square that is on the map") {
+TEST_CASE("At a clamped border a cell extends the border, times the root of the share of its square on the map") {
     Random random(3);
     QuantisedMap map = empty_map(17, 17, AddressMode::clamp, AddressMode::clamp);
     for (std::uint16_t& code : map.codes)
@@ -162,7 +161,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("Every value that a map can have fits an entry") {
+TEST_CASE("Every possible value of a map fits an entry") {
     QuantisedMap map = empty_map(9, 9, AddressMode::clamp, AddressMode::clamp);
     for (std::uint32_t k = 0; k < 81; ++k)
         map.codes[k] = (k % 9 < 3 || k % 9 > 5) ? 65535 : 0;

@@ -26,7 +26,7 @@ double squared(const std::vector<double>& errors) {
 
 }  // namespace
 
-TEST_CASE("A mesh whose map is linear within its triangles, but for noise, gets the heights without noise") {
+TEST_CASE("A mesh whose map is linear within its triangles, except for noise, gets the heights without noise") {
     Random random(1);
     QuantisedMap map = empty_map(65, 65, AddressMode::clamp, AddressMode::clamp);
     const auto level = [](std::uint32_t x, std::uint32_t y) { return 20000.0 + 100 * x + 50 * y; };
@@ -44,7 +44,7 @@ TEST_CASE("A mesh whose map is linear within its triangles, but for noise, gets 
     }
 }
 
-TEST_CASE("No other code under a vertex makes the squared error less") {
+TEST_CASE("No other code under a vertex reduces the squared error") {
     Random random(2);
     for (int trial = 0; trial < 10; ++trial) {
         QuantisedMap map = empty_map(20, 17, AddressMode::clamp, AddressMode::clamp);
@@ -67,7 +67,7 @@ TEST_CASE("No other code under a vertex makes the squared error less") {
     }
 }
 
-TEST_CASE("Of meshes over the same texels each counts") {
+TEST_CASE("Each of several meshes over the same texels counts") {
     Random random(3);
     QuantisedMap map = empty_map(33, 33, AddressMode::clamp, AddressMode::clamp);
     for (std::uint16_t& code : map.codes)
@@ -84,7 +84,7 @@ TEST_CASE("Of meshes over the same texels each counts") {
     CHECK(together < 0.999 * of_both(fit_heights(map, fine, formats)));
 }
 
-TEST_CASE("Fitted heights stay codes") {
+TEST_CASE("Fitted heights stay within the range of codes") {
     QuantisedMap map = empty_map(17, 17, AddressMode::clamp, AddressMode::clamp);
     map.bits = 10;
     for (std::uint32_t k = 0; k < map.codes.size(); ++k)

@@ -37,7 +37,7 @@ TEST_CASE("A lattice covers each grid point, with vertices at texel centres, and
     }
 }
 
-TEST_CASE("Crater Lake takes 3 x 4 quads of 128 texels, the last beyond the map, a period exactly one") {
+TEST_CASE("Crater Lake takes 3 x 4 quads of 128 texels, the last extend beyond the map, a period takes exactly one") {
     CHECK(lattice_quads(336, false, 128) == 3);
     CHECK(lattice_quads(459, false, 128) == 4);
     CHECK(lattice_quads(129, false, 128) == 1);

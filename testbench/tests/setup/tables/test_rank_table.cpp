@@ -99,7 +99,7 @@ TEST_CASE("The hardware's recursion rebuilds the host's hierarchy triangle by tr
     }
 }
 
-TEST_CASE("With both tables an edge splits if either says so, and the rank orders") {
+TEST_CASE("With both tables an edge splits if either requires it, and the rank sets the order") {
     Random random(2);
     for (int trial = 0; trial < 30; ++trial) {
         const RandomCase at(random);
@@ -126,7 +126,7 @@ TEST_CASE("With both tables an edge splits if either says so, and the rank order
     }
 }
 
-TEST_CASE("No grid point lies beyond the Bound Test's threshold") {
+TEST_CASE("No grid point is beyond the Bound Test's threshold") {
     Random random(3);
     for (int trial = 0; trial < random_cases(300); ++trial) {
         const RandomCase at(random);
@@ -143,7 +143,7 @@ TEST_CASE("No grid point lies beyond the Bound Test's threshold") {
     }
 }
 
-TEST_CASE("Off the lattice no grid point lies beyond the Bound Test's threshold and what the tables say remains") {
+TEST_CASE("Off the lattice no grid point is beyond the Bound Test's threshold plus the tables' remainder") {
     Random random(10);
     int with_rest = 0, with_splits = 0;
     for (int trial = 0; trial < random_cases(300); ++trial) {
@@ -314,7 +314,7 @@ TEST_CASE("No grid point in the picture appears farther from the mesh than the b
     CHECK(broken_without > 0);
 }
 
-TEST_CASE("Radii nest: a midpoint's covers those of all that need it, from where its edge's ends are") {
+TEST_CASE("Radii nest: a midpoint's radius covers those of all midpoints that need it, from its edge's ends") {
     Random random(9);
     std::size_t raised = 0;
     for (int trial = 0; trial < 60; ++trial) {
@@ -339,7 +339,7 @@ TEST_CASE("Radii nest: a midpoint's covers those of all that need it, from where
     CHECK(raised > 0);
 }
 
-TEST_CASE("Thresholds as seen: twice the distance, or half the picture, is worth an octave") {
+TEST_CASE("Thresholds as seen: twice the distance, or half the picture, is one octave") {
     const ViewedScale view{512, 1, 1, 1, 2};
     const auto rank = [&](double error, bool per_pixel) { return seen_rank_threshold(error, per_pixel, view); };
     // An error of 1 code at distance 1 (sum of two distances: 2) is 512 pixels high; a texel is 1024 pixels wide.
@@ -355,7 +355,7 @@ TEST_CASE("Thresholds as seen: twice the distance, or half the picture, is worth
     CHECK(seen_bound_threshold(1, {512, 1, 1, 0, 2}) == (1 << (datapath::bound_limit_bits - 1)) - 1);
 }
 
-TEST_CASE("Where entries of few bits do not reach, they keep the order and say up to which threshold the bound holds") {
+TEST_CASE("Entries of too few bits keep the order, and the bound holds up to a reported threshold") {
     Random random(6);
     QuantisedMap map = empty_map(97, 97, AddressMode::clamp, AddressMode::clamp);
     for (std::uint16_t& code : map.codes)
@@ -395,7 +395,7 @@ TEST_CASE("Tables of random bits give meshes without cracks") {
     }
 }
 
-TEST_CASE("Triangles without area in the map are left out of the hierarchy") {
+TEST_CASE("Triangles without area in the map are not in the hierarchy") {
     const std::uint32_t texel = 1u << formats.texture.fraction;
     Random random(7);
     const QuantisedMap map = random_map(random, 4, 4, AddressMode::clamp, AddressMode::clamp);
@@ -405,7 +405,7 @@ TEST_CASE("Triangles without area in the map are left out of the hierarchy") {
     CHECK(*std::max_element(tables.bound.begin(), tables.bound.end()) == 0);
 }
 
-TEST_CASE("Thresholds are rounded down to entries, and entries say what they promise") {
+TEST_CASE("Thresholds are rounded down to entries, and entries convert to the error they guarantee") {
     for (int bits = 6; bits <= 16; ++bits) {
         CHECK(bound_error(bound_threshold(100, bits), bits) <= 100 * (1 + 1e-12));
         CHECK(bound_error(bound_threshold(100, bits) + 1, bits) > 100 * (1 + 1e-12));
@@ -417,7 +417,7 @@ TEST_CASE("Thresholds are rounded down to entries, and entries say what they pro
     }
 }
 
-TEST_CASE("Any base mesh is served as far as its edges allow") {
+TEST_CASE("Any base mesh gets tables as far as its edges allow") {
     const std::uint32_t texel = 1u << formats.texture.fraction;
     const auto triangle = [&](std::array<double, 6> t) {
         const auto at = [&](std::size_t k) { return static_cast<std::uint32_t>(t[k] * texel); };
@@ -426,7 +426,7 @@ TEST_CASE("Any base mesh is served as far as its edges allow") {
     Random random(5);
     const QuantisedMap map = random_map(random, 32, 32, AddressMode::clamp, AddressMode::clamp);
 
-    SECTION("of edges that differ by other than even texels, none splits") {
+    SECTION("edges whose ends are not an even number of texels apart never split") {
         const std::vector<Corners> base{triangle({0.5, 0.5, 31.5, 0.5, 31.5, 31.5}),
                                         triangle({0.5, 0.5, 31.5, 31.5, 0.5, 31.5})};
         CHECK(count_whole_base_edges(base, formats) == 5);
@@ -443,7 +443,7 @@ TEST_CASE("Any base mesh is served as far as its edges allow") {
         CHECK(tables.rows == 33);
         CHECK(count_whole_base_edges(base, formats) == 0);
     }
-    SECTION("where triangles lie on the same texels a midpoint has the greater entry") {
+    SECTION("a midpoint of triangles on the same texels has the greater entry") {
         std::vector<Corners> base{triangle({0.5, 0.5, 32.5, 0.5, 32.5, 32.5}),
                                   triangle({0.5, 0.5, 32.5, 32.5, 0.5, 32.5})};
         const RankTables alone = make_rank_tables(map, base, formats, 0, 8);
