@@ -564,7 +564,7 @@ TEST_CASE("golden's own run is judged: by its triangles, by the surfaces' distan
         }
     CHECK(stopped.bound_hit);
     CHECK(failed(stopped));
-    CHECK_THAT(conformance_text(checks), Contains("more than 1040, where its run was stopped"));
+    CHECK_THAT(conformance_text(checks), Contains("more than 1040; its run was stopped there"));
 }
 
 TEST_CASE("on a cylinder rounding moves normals, too, and they turn") {
