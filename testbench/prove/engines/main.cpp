@@ -50,7 +50,8 @@ int sc_main(int argc, char** argv) {
     app.add_option("--count", count, "designs, of consecutive seeds")
         ->capture_default_str()
         ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 32));
-    app.add_flag("--list", list, "what was compared of each design: digests of the mesh and of each unit's item times");
+    app.add_flag("--list", list,
+                 "list what was compared for each design: digests of the mesh and of each unit's item times");
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

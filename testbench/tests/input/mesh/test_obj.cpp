@@ -197,7 +197,7 @@ TEST_CASE("T-junctions, crowded edges and changes of winding are told") {
     CHECK_THAT(all_repairs(book), Contains("1 edge(s) belong to more than two triangles"));
     const BaseMesh twisted = parse(square + "f 1/1 2/2 3/3\nf 1/1 4/4 3/3\n");
     CHECK_THAT(all_repairs(twisted), Contains("The winding changes across 1 edge(s)"));
-    CHECK_THAT(all_repairs(twisted), Contains("At 2 point(s) the normals of the triangles around cancel"));
+    CHECK_THAT(all_repairs(twisted), Contains("At 2 point(s) the normals of the surrounding triangles cancel"));
     require_complete(twisted);
 }
 
