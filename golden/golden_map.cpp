@@ -27,7 +27,7 @@ std::int64_t first_texel(double centre, std::int64_t length, std::int64_t size, 
 // The arguments are checked here, before the summed-area table is built from them.
 std::vector<std::uint32_t> checked(int width, int height, const std::vector<double>& codes) {
     if (width < 1 || height < 1 || codes.size() != static_cast<std::size_t>(width) * static_cast<std::size_t>(height))
-        throw std::invalid_argument("golden map: size and number of codes do not agree");
+        throw std::invalid_argument("golden map: the number of codes is not width times height");
     double sum = 0;
     for (const double code : codes) {
         if (!(code >= 0 && code < 0x1p32) || code != std::floor(code))

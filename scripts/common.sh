@@ -73,7 +73,7 @@ python_with() {
         "$candidate" -c 'import sys; from importlib.util import find_spec as find
 exit(not all(map(find, sys.argv[1:])))' "$@" 2>/dev/null && echo "$candidate" && return
     done
-    echo "$(basename "$0"): no python3 in the path has $*; scripts/install installs them" >&2
+    echo "$(basename "$0"): no python3 in PATH has the modules $*; scripts/install installs them" >&2
     return 2
 }
 

@@ -17,15 +17,15 @@ from table import make_table, measured, write_csv, write_sqlite
 def options_from(arguments):
     parser = argparse.ArgumentParser(prog="scripts/sweep", description="Runs many designs and compares them.")
     parser.add_argument("file", type=Path, metavar="FILE", help="sweep file (TOML)")
-    parser.add_argument("--check", action="store_true", help="check the file, count its runs, estimate their time, and stop")
-    parser.add_argument("--report", action="store_true", help="write table and page of the results there are, and stop")
+    parser.add_argument("--check", action="store_true", help="check the file, count its runs, estimate their time, and exit")
+    parser.add_argument("--report", action="store_true", help="write table and page of the existing results, and exit")
     parser.add_argument("--search", action="store_true", help="let Optuna choose designs instead of running all")
     parser.add_argument("--workers", type=int, default=4, help="of a search (%(default)s)")
     parser.add_argument("--storage", help="of a search: a file, or the address of a database (search.journal in the output folder)")
     parser.add_argument("--output", type=Path, help="folder of table and page (runs/sweeps/NAME)")
     parser.add_argument("--store", type=Path, default=Path("runs/sweeps/results"),
                         help="folder of the results, which sweeps share (%(default)s)")
-    parser.add_argument("--jobs", type=int, help="runs at a time (all cores; with --slurm as the profile says)")
+    parser.add_argument("--jobs", type=int, help="runs at a time (all cores; with --slurm, the profile's number)")
     parser.add_argument("--slurm", action="store_true", help="run on Slurm; the folders must be visible to all nodes")
     parser.add_argument("--profile", type=Path, help="Snakemake profile instead of scripts/exploration/slurm")
     parser.add_argument("--group", type=int, help="runs in a job (50 with --slurm, else as many as take two seconds)")
@@ -58,12 +58,12 @@ def probe(sweep, planner, store, designs):
                 known.update(result["figures"])
                 known.update(measured(sweep, result)[0])
     if not tried:
-        print("scripts/sweep: no design ran to its end; the names of the figures are not checked", file=sys.stderr)
+        print("scripts/sweep: no design finished; the names of the figures are not checked", file=sys.stderr)
         return seconds
     for name in sweep.wanted:
         if name not in known:
             close = [each for each in sorted(known) if each.split(".")[-1] == name.split(".")[-1]]
-            raise sweep.error(f"no run has the figure `{name}`" + (f"; there is {', '.join(close[:5])}" if close else
+            raise sweep.error(f"no run has the figure `{name}`" + (f"; did you mean {', '.join(close[:5])}?" if close else
                               "; statistics.csv of a run lists them"), sweep.line_of(name))
     return seconds
 
@@ -139,7 +139,7 @@ def main():
         print(f"scripts/sweep: {error}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
-        print("\nscripts/sweep: interrupted; the same command goes on from here", file=sys.stderr)
+        print("\nscripts/sweep: interrupted; the same command resumes here", file=sys.stderr)
         return 130
 
 

@@ -54,7 +54,7 @@ def lock(folder, script):
     try:
         fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:
-        print(f"{script}: waits for another in {folder}", file=sys.stderr)
+        print(f"{script}: waiting for another one in {folder}", file=sys.stderr)
         fcntl.flock(file, fcntl.LOCK_EX)
     return file
 
@@ -120,7 +120,7 @@ def run_tasks(options, store, tasks, longest=None):
     done = progress.done()
     print(f"  {done} of {progress.count} runs in {duration(time.monotonic() - progress.begin)}", file=sys.stderr)
     if any(codes):
-        print(f"  {progress.count - done} runs came to no result; {options.output}/snakemake.log says why", file=sys.stderr)
+        print(f"  {progress.count - done} runs without a result; see {options.output}/snakemake.log", file=sys.stderr)
 
 
 def run_search(options, sweep, store, runs, storage):
@@ -128,5 +128,5 @@ def run_search(options, sweep, store, runs, storage):
     begin = time.monotonic()
     words = [HERE / "search.py", sweep.path.resolve(), options.program, store.folder.resolve(), storage, runs]
     if call_snakemake(options, words, options.workers, options.workers, lambda: None) != 0:
-        print(f"  a worker ended early; {options.output}/snakemake.log says why", file=sys.stderr)
+        print(f"  a worker ended early; see {options.output}/snakemake.log", file=sys.stderr)
     print(f"  searched for {duration(time.monotonic() - begin)}", file=sys.stderr)

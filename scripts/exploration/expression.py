@@ -25,7 +25,7 @@ class Expression:
         try:
             self.root = ast.parse(text, mode="eval").body
         except SyntaxError as error:
-            raise ValueError(f"`{text}` is no expression: {error.msg}") from None
+            raise ValueError(f"`{text}` is not an expression: {error.msg}") from None
         self._check(self.root)
 
     def _check(self, node):
@@ -37,7 +37,7 @@ class Expression:
             isinstance(node, (ast.BinOp, ast.UnaryOp, ast.Compare)) and
             all(type(each) in OPERATORS for each in operators if each))
         if not known:
-            raise ValueError(f"`{self.text}`: only names, constants, arithmetic, comparisons, and, or, not")
+            raise ValueError(f"`{self.text}`: only names, constants, arithmetic, comparisons, and, or, not are allowed")
         for child in ast.iter_child_nodes(node):
             if isinstance(child, ast.expr):
                 self._check(child)

@@ -39,7 +39,7 @@ def write_page(table, path):
              "bottleneck": row.bottleneck,
              "settings": {key: value for key, value in row.design.settings.items() if QUIET.get(key) != value},
              "timing": row.timing if all_tables or row.front else
-             f"Tables of more than {MOST_TIMING_TABLES} designs are not on the page: run the command."}
+             f"Tables of more than {MOST_TIMING_TABLES} designs are omitted from the page: run the command."}
             for row in table.rows]
     ok = sum(row.status == "ok" for row in table.rows)
     summary = f"{len(rows)} runs, {len(rows) - ok} of them without figures; {sum(row.front for row in table.rows)} on the front of " \

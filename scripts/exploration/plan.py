@@ -41,7 +41,7 @@ class Planner:
             if key not in known:
                 raise sweep.error(f"unknown key `{key}`; `tessera keys` lists them all", place)
             if key in taken and taken[key] != sweep.line_of("[set]"):
-                raise sweep.error(f"`{key}` is on another axis, too, line {taken[key]}", place)
+                raise sweep.error(f"`{key}` is also on another axis, line {taken[key]}", place)
             taken[key] = line
         for constraint in sweep.constraints:
             for name in constraint.names - set(known):

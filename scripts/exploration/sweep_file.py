@@ -83,14 +83,14 @@ def values_of(table):
     """The values of an axis of one key: a list, or a range with a step or a factor."""
     if "values" in table:
         if not isinstance(table["values"], list):
-            raise ValueError("`values` is a list")
+            raise ValueError("`values` must be a list")
         return table["values"]
     low, high = table["from"], table["to"]
     if any(isinstance(each, bool) or not isinstance(each, (int, float)) for each in (low, high)):
-        raise ValueError("`from` and `to` are numbers")
+        raise ValueError("`from` and `to` must be numbers")
     step, factor = table.get("step", 0 if "factor" in table else 1), table.get("factor", 1)
     if not (step > 0 or (factor > 1 and low > 0)):
-        raise ValueError("`step` is above 0, or `factor` above 1 and `from` above 0")
+        raise ValueError("`step` must be above 0, or `factor` above 1 and `from` above 0")
     values = []
     while True:
         # Multiples of the step, since its sums would miss `to` by rounding.
@@ -107,17 +107,17 @@ KINDS = ({"key", "values"}, {"key", "from", "to"}, {"keys", "values"}, {"name", 
 def axis_of(table, line):
     """Raises ValueError."""
     if set(table) - {"step", "factor"} not in KINDS:
-        raise ValueError("an axis has `key` and `values`, or `key`, `from`, `to` and `step` or `factor`, or `keys` and "
+        raise ValueError("an axis needs `key` and `values`, or `key`, `from`, `to` and `step` or `factor`, or `keys` and "
                          f"`values`, or `name` and `points`; not {', '.join(f'`{key}`' for key in table)}")
     if "points" in table:
         if not all(isinstance(settings, dict) for settings in table["points"].values()):
-            raise ValueError("each of `points` is a table of keys and values")
+            raise ValueError("each of `points` must be a table of keys and values")
         return Axis((table["name"],), [Point((label,), settings) for label, settings in table["points"].items()], line)
     if "keys" in table:
         keys = tuple(table["keys"])
         for row in table["values"]:
             if not isinstance(row, list) or len(row) != len(keys):
-                raise ValueError(f"each of `values` is a list of {len(keys)}, as `keys` is; not {row}")
+                raise ValueError(f"each of `values` must be a list of {len(keys)}, as `keys` is; not {row}")
         return Axis(keys, [Point(tuple(row), dict(zip(keys, row))) for row in table["values"]], line)
     return Axis((table["key"],), [Point((value,), {table["key"]: value}) for value in values_of(table)], line)
 
@@ -138,12 +138,12 @@ def read_sweep(path):
         raise SweepError(f"{path}: {error}") from None
     for key in content:
         if key not in TOP_KEYS:
-            raise sweep.error(f"unknown entry `{key}`; there are {', '.join(sorted(TOP_KEYS))}", sweep.line_of(key))
+            raise sweep.error(f"unknown entry `{key}`; the entries are {', '.join(sorted(TOP_KEYS))}", sweep.line_of(key))
     for key, kind in (("scenes", list), ("set", dict), ("axis", list), ("constraints", list), ("figures", list),
                       ("derived", dict), ("minimise", list), ("maximise", list), ("search", dict),
                       ("longest_run", (int, float)), ("job", str)):
         if key in content and not isinstance(content[key], kind):
-            raise sweep.error(f"`{key}` is of the wrong kind", sweep.line_of(key))
+            raise sweep.error(f"`{key}` has the wrong type", sweep.line_of(key))
     if ("job" in content) == ("scenes" in content):
         raise sweep.error("name a `job`, or several in `scenes`")
     for name in content.get("scenes", [content.get("job")]):
@@ -179,11 +179,11 @@ def read_results(sweep, content):
     sweep.figures = content.get("figures", [])
     for name, entry in content.get("derived", {}).items():
         if not isinstance(entry, dict) or set(entry) - {"unit"} != {"is"}:
-            raise sweep.error(f"`{name}` wants {{ is = \"expression\", unit = \"bit\" }}", sweep.line_of(name))
+            raise sweep.error(f"`{name}` must be {{ is = \"expression\", unit = \"bit\" }}", sweep.line_of(name))
         sweep.derived[name] = Derived(expression(entry["is"]), entry.get("unit", ""))
     sweep.objectives = {name: sign for key, sign in (("minimise", 1), ("maximise", -1)) for name in content.get(key, [])}
     sweep.longest_run = content.get("longest_run")
     sweep.search = {"share": 0.2, "seed": 1, **content.get("search", {})}
     for key in sweep.search:
         if key not in ("share", "seed", "runs"):
-            raise sweep.error(f"unknown entry `{key}` in [search]; there are runs, share, seed", sweep.line_of(key))
+            raise sweep.error(f"unknown entry `{key}` in [search]; the entries are runs, share, seed", sweep.line_of(key))

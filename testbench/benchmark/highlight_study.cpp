@@ -85,8 +85,8 @@ void print_study(const Study& study) {
     const Row with = study.run(true, tests.normal_threshold);
     const double finer = study.threshold_for(with.triangles);
     fmt::print(
-        "Highlight within {} degrees of the half vector, its normals to {}; specular exponent {}; errors of\n"
-        "per-vertex against per-texel specular light, full scale 1; density in triangles a texel\n\n"
+        "Highlight within {} degrees of the half vector, normal threshold {}; specular exponent {}; errors of\n"
+        "per-vertex against per-texel specular light, full scale 1; density in triangles per texel\n\n"
         "| Highlight Test | Normal Test threshold | triangles | RMS | RMS in the highlight | largest | "
         "density "
         "in it | elsewhere |\n"
@@ -96,7 +96,7 @@ void print_study(const Study& study) {
     print_row("on", tests.normal_threshold, with);
     const Row as_many = study.run(false, finer);
     const bool enough = as_many.triangles >= with.triangles;
-    print_row(enough ? "off, as many triangles" : "off, the most the other tests allow", finer, as_many);
+    print_row(enough ? "off, same number of triangles" : "off, most triangles the other tests allow", finer, as_many);
 }
 
 Study make_study(int argc, char** argv) {

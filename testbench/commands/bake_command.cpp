@@ -68,10 +68,10 @@ std::string summary(const BakedMap& map, const EncodedMap& file) {
     if (map.raised > 0)
         text += fmt::format("  below the floor   {}: {:.6g} there\n", share(map.raised, map), map.floor);
     if (map.uncovered > 0)
-        text += fmt::format("  no base triangle  at {}: their nearest neighbours' values there\n",
+        text += fmt::format("  no base triangle  at {}: set to their nearest neighbours' values\n",
                             share(map.uncovered, map));
     if (map.overlaps > 0)
-        text += fmt::format("  note: {} lie in several base triangles: the first one's surface is in the map\n",
+        text += fmt::format("  note: {} lie in several base triangles; the map holds the first one's surface\n",
                             share(map.overlaps, map));
     text += fmt::format("  for a job         displacement.scale = {}, displacement.bias = {}\n",
                         toml_number(file.scale), toml_number(file.bias));

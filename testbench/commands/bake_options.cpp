@@ -33,7 +33,7 @@ void BakeOptions::add_to(CLI::App& bake) {
         ->required();
     bake.add_option("--size", size_, "WIDTHxHEIGHT of the map in texels; default: 256x256");
     mesh_given_ = bake.add_option(
-        "--mesh", mesh_, "JOB whose base mesh the surface lies over, along its normals; default: the plane z = 0");
+        "--mesh", mesh_, "JOB with the base mesh along whose normals the surface is sampled; default: the plane z = 0");
 }
 
 BakeRequest BakeOptions::request() const {

@@ -31,15 +31,18 @@ class TraceOptions {
   public:
     void add_to(CLI::App& run) {
         const std::string group = "Traces (mode = \"timed\")";
-        run.add_flag("--vcd", vcd_, "write waveforms, trace.vcd: as --set output.vcd=true")->group(group);
-        run.add_flag("--fst", fst_, "and compress them, trace.fst (with vcd2fst of the package gtkwave)")->group(group);
-        run.add_flag("--timeline", timeline_, "write activity per unit, timeline.json: as --set output.timeline=true")
+        run.add_flag("--vcd", vcd_, "write waveforms, trace.vcd; same as --set output.vcd=true")->group(group);
+        run.add_flag("--fst", fst_, "also compress the waveforms, trace.fst (needs vcd2fst from the package gtkwave)")
+            ->group(group);
+        run.add_flag("--timeline", timeline_,
+                     "write activity per unit, timeline.json; same as --set output.timeline=true")
             ->group(group);
         run.add_option("--trace", window_,
-                       "cycles to trace, FROM:TO: as --set output.trace_from=FROM --set output.trace_to=TO")
+                       "cycles to trace, FROM:TO; same as --set output.trace_from=FROM --set output.trace_to=TO")
             ->group(group);
-        run.add_option("--trace-units", units_,
-                       "waveforms of units whose name contains one of these words: as --set output.trace_units")
+        run.add_option(
+               "--trace-units", units_,
+               "waveforms only of units whose name contains one of these words; same as --set output.trace_units")
             ->group(group);
     }
 
@@ -83,8 +86,8 @@ std::function<ExitCode()> read_command_line(int argc, const char* const* argv) {
     app.set_version_flag("--version", std::string("tessera ") + version);
     app.require_subcommand(0, 1);  // a missing subcommand is reported below
     app.footer(
-        "exit codes: 0 fine, 1 conformance or an invariant violated, 2 bad input or usage, 3 deadlock,\n"
-        "            4 a stated resource limit");
+        "exit codes: 0 success, 1 conformance or an invariant violated, 2 bad input or usage, 3 deadlock,\n"
+        "            4 resource limit reached");
 
     CLI::App* const run = app.add_subcommand("run", "run a job: tessellate, check against the golden model, report");
     CLI::Option* const job = run->add_option("JOB", command.job_file,
@@ -101,7 +104,7 @@ std::function<ExitCode()> read_command_line(int argc, const char* const* argv) {
     CLI::App* const compare = app.add_subcommand("compare",
                                                  "measure a run's mesh against the displaced surface; writes "
                                                  "error.json and error.txt into its folder");
-    compare->add_option("RUN", run_folder, "folder that `tessera run` left")->required();
+    compare->add_option("RUN", run_folder, "run folder, written by `tessera run`")->required();
     compare->add_option("--data", data, "folder of `data:` paths in its job; default: $TESSERA_DATA");
 
     CLI::App* const render = app.add_subcommand("render", "render a finished run's mesh to PNG or EXR");
@@ -121,13 +124,13 @@ std::function<ExitCode()> read_command_line(int argc, const char* const* argv) {
     tune_options.add_to(*tune);
     tune->add_option("--data", data, "folder of `data:` paths in the job; default: $TESSERA_DATA");
 
-    CLI::App* const rank =
-        app.add_subcommand("rank", "make a job's Rank Table, and measure the meshes of its thresholds");
+    CLI::App* const rank = app.add_subcommand("rank", "make a job's Rank Table and measure the mesh at each threshold");
     CLI::Option* const rank_job =
         rank->add_option("JOB", rank_order.job_file, "job file (TOML); default: the half donut");
-    rank->add_option("--output", rank_order.output,
-                     "folder of rank_table.bin (as the memory holds it), rank_table.json and thresholds.csv; default: "
-                     "runs/rank");
+    rank->add_option(
+        "--output", rank_order.output,
+        "output folder for rank_table.bin (the memory's contents), rank_table.json and thresholds.csv; default: "
+        "runs/rank");
     rank->add_option("--set", rank_order.settings, "set one key of the job first")->take_all()->allow_extra_args(false);
     rank->add_option("--data", data, "folder of `data:` paths in the job; default: $TESSERA_DATA");
 

@@ -76,10 +76,11 @@ std::string frames_traffic(const std::vector<FrameRow>& rows) {
         return a.sent.total() < b.sent.total();
     });
     std::string text = fmt::format("  {:<26}{}\n", "sent for the first frame", traffic_text(rows[0].sent));
-    text += fmt::format("  {:<26}{} (the most, {})\n", "for a later one", traffic_text(most->sent), most->name);
+    text +=
+        fmt::format("  {:<26}{} (the largest, {})\n", "sent for a later frame", traffic_text(most->sent), most->name);
     text += fmt::format(
-        "  {:<26}{} bytes; the tessellated meshes, indexed, would be {}: the host sends {:.2f} times as "
-        "much\n",
+        "  {:<26}{} bytes; the tessellated meshes, indexed, would be {}: the host sends {:.2f} times that "
+        "size\n",
         "for all frames", grouped_digits(all), grouped_digits(tessellated),
         tessellated == 0 ? 0.0 : static_cast<double>(all) / static_cast<double>(tessellated));
     return text;

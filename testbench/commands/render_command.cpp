@@ -50,8 +50,7 @@ Output choose_output(const RenderRequest& request) {
         throw InputError(fmt::format("--output {}: {} views need {} files; name a folder", request.output.string(),
                                      request.views.size(), request.views.size()));
     if (ending == ".png" && request.exr)
-        throw InputError(
-            fmt::format("--output {}: does not agree with --exr; name it FILE.exr", request.output.string()));
+        throw InputError(fmt::format("--output {}: conflicts with --exr; name it FILE.exr", request.output.string()));
     if (ending == ".exr" && !output.exr)
         output.exr = ExrSamples::half;
     output.folder = folder_of(request.output);
@@ -145,7 +144,7 @@ ExitCode render_command(const RenderRequest& asked, const fs::path& data_folder)
     const bool in_sight =
         std::any_of(pictures.begin(), pictures.end(), [](const Picture& picture) { return picture.mesh_in_sight; });
     if (!in_sight)
-        fmt::print("  {}\n", mesh.triangles.empty() ? "the run's mesh is empty: all of it was culled"
+        fmt::print("  {}\n", mesh.triangles.empty() ? "the run's mesh is empty: all triangles were culled"
                                                     : "no part of the mesh is in this camera's view");
     return ExitCode::fine;
 }

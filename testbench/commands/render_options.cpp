@@ -79,13 +79,15 @@ void RenderOptions::add_to(CLI::App& render) {
         render.add_option("--line-width", line_width_, "width of the triangles' edges, in pixels")->group(picture);
     error_scale_given_ =
         render
-            .add_option("--error-scale", error_scale_,
-                        "error shown in the darkest colour of the view `error`, model units; default: exceeded "
-                        "by 1 % of the area")
+            .add_option(
+                "--error-scale", error_scale_,
+                "error shown in the darkest colour of the view `error`, model units; default: the error exceeded "
+                "on 1 % of the area")
             ->group(picture);
-    const std::string camera = "Camera, instead of the run's own";
+    const std::string camera = "Camera; default: the run's";
     render
-        .add_flag("--whole-viewport", whole_viewport_, "show all that the camera sees, not only the part with the mesh")
+        .add_flag("--whole-viewport", whole_viewport_,
+                  "show the camera's whole viewport, not only the part with the mesh")
         ->group(camera);
     render.add_option("--eye", eye_, "X Y Z, model units")->expected(3)->group(camera);
     render.add_option("--target", target_, "X Y Z, model units")->expected(3)->group(camera);

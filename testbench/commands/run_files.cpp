@@ -114,7 +114,7 @@ void check_folder_of(const fs::path& file, const std::string& option) {
     std::error_code error;
     if (!fs::is_directory(folder, error))
         throw InputError(
-            fmt::format("{} {}: there is no folder {}; make it first", option, file.string(), folder.string()));
+            fmt::format("{} {}: there is no folder {}; create it first", option, file.string(), folder.string()));
     check_output_folder(folder, option);
 }
 
@@ -154,7 +154,7 @@ void require_run_folder(const Job& job) {
     const fs::path output = real_place(job.output.folder);
     const fs::path inside = fs::current_path().lexically_relative(output);
     if (!output.has_relative_path() || (inside != "." && *inside.begin() != ".."))
-        refuse("holds the working folder; name a folder for the run alone");
+        refuse("contains the current directory; name a folder for this run only");
     std::vector<fs::path> folders{output};
     for (std::int64_t k = 0; job.frames.count > 1 && k < job.frames.count; ++k)
         folders.push_back(output / frame_name(k));
@@ -162,7 +162,7 @@ void require_run_folder(const Job& job) {
         const std::vector<std::string> taken = names_taken(folder);
         if (!taken.empty() && !is_run_folder(folder))
             refuse(
-                fmt::format("the run would replace {}, and no run of tessera left that folder: move the file away, "
+                fmt::format("the run would replace {}, but the folder is not a run folder of tessera: move the file, "
                             "or choose another output.folder",
                             (folder / taken.front()).string()));
     }
@@ -194,7 +194,7 @@ void require_inputs_kept(const std::string& output, const std::vector<fs::path>&
     for (const fs::path& to : written)
         for (const fs::path& from : {fs::path(job_file), job.mesh.path, job.map.path})
             if (!from.empty() && (place_of_name(to) == place_of_name(from) || place_of_name(to) == real_place(from)))
-                throw InputError(fmt::format("--output {}: {} would overwrite {}, which is read; choose another name",
+                throw InputError(fmt::format("--output {}: {} would overwrite {}, an input; choose another name",
                                              output, to.string(), from.string()));
 }
 

@@ -59,7 +59,7 @@ std::vector<Frame> plan_frames(const Job& asked, ResolvedJob& resolved_job) {
     std::vector<Frame> frames;
     std::optional<MachineSetup> before;
     for (std::int64_t k = 0; k < job.frames.count; ++k) {
-        progress.show("making the frames ready", static_cast<double>(k) / static_cast<double>(job.frames.count));
+        progress.show("preparing the frames", static_cast<double>(k) / static_cast<double>(job.frames.count));
         Frame frame;
         frame.job = frame_job(job, k);
         frame.row.name = frame_name(k);
@@ -79,7 +79,8 @@ pid_t fork_frame(const Frame& frame) {
     const pid_t parent = ::getpid();
     const pid_t child = ::fork();
     if (child < 0)
-        throw std::system_error(errno, std::generic_category(), fmt::format("{}: no process for it", frame.text()));
+        throw std::system_error(errno, std::generic_category(),
+                                fmt::format("{}: cannot start a process", frame.text()));
     if (child == 0) {
         ::prctl(PR_SET_PDEATHSIG, SIGTERM);
         if (::getppid() != parent)  // the parent ended before prctl()

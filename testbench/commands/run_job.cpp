@@ -270,7 +270,7 @@ ExitCode run_job(const Command& command) {
         return ExitCode::fine;
     }
     if (!command.trace_option.empty() && !Traces::wanted(job))
-        throw InputError(fmt::format("{} chooses what to trace, and nothing is traced: add --vcd, --timeline or both",
+        throw InputError(fmt::format("{} selects what to trace, but tracing is off: add --vcd, --timeline or both",
                                      command.trace_option));
     require_run_folder(job);
     require_inputs_stay(job);

@@ -56,7 +56,7 @@ std::string checks_rows(const Checks& checks) {
         text += check_row(
             "golden mesh", e.passed(),
             e.bound_hit
-                ? fmt::format("more than {} triangles, where its run was stopped", count(e.bound))
+                ? fmt::format("more than {} triangles; its run was stopped there", count(e.bound))
                 : fmt::format("{} triangles ({:+.2f} %, allowed {}); {:.2f} % of the points farther apart than "
                               "rounding explains (allowed {:.3g} %), at most {:.3g} model units, RMS {:.3g} (allowed "
                               "{:.3g})",
@@ -75,15 +75,16 @@ std::string checks_rows(const Checks& checks) {
         const InvariantResult& i = *checks.invariants;
         const std::string wrong =
             (i.wrong_triangles() == 0 ? "" : fmt::format(", {} triangles wrong", count(i.wrong_triangles()))) +
-            (i.unfinished == 0 ? "" : ", the datapath's own recursion does not end");
+            (i.unfinished == 0 ? "" : ", the bare datapath's recursion does not end");
         text += check_row("invariants", i.passed(),
                           fmt::format("{} cracks, {} T-vertices{}; in texture space {} collapsed, {} turned over",
                                       i.cracks, i.t_vertices, wrong, i.collapsed, i.turned_over));
         if (i.open_texture_seam_edges > 0)
-            text += row("texture seams",
-                        fmt::format("{} edges open: the map, or a table made of it, is not continuous across a seam of "
-                                    "this mesh's texture coordinates",
-                                    count(i.open_texture_seam_edges)));
+            text +=
+                row("texture seams",
+                    fmt::format("{} edges open: the map, or a table made from it, is not continuous across a seam of "
+                                "this mesh's texture coordinates",
+                                count(i.open_texture_seam_edges)));
     }
     if (checks.work)
         text += check_row(
@@ -193,7 +194,7 @@ std::string summary(const MachineSetup& setup, const Simulation& simulation, con
                                           setup.registers.tests.highlight_test
                                               ? fmt::format(", highlight alone {}", count(decided.split_by_highlight))
                                               : ""));
-    text += row("  wanted, but stopped by",
+    text += row("  requested, stopped by",
                 fmt::format("view alone {}, tex coord{} alone {}, generation alone {}, several {}",
                             count(decided.stopped_by_view_alone),
                             std::array{"", " (half texels)", " (quarter texels)"}.at(

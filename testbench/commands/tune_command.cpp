@@ -49,7 +49,7 @@ void add_grid(const std::string& grid, const TuneRequest& request, const Searche
               std::vector<BaseChoice>& bases) {
     const auto refuse = [&](const std::string& why) { throw InputError(fmt::format("--grid {}: {}", grid, why)); };
     if (request.job.mesh.source != MeshSource::plane && request.job.mesh.source != MeshSource::lattice)
-        refuse("applies to a plane (mesh.source = \"plane\" or \"lattice\") only; leave --grid out");
+        refuse("applies to a plane (mesh.source = \"plane\" or \"lattice\") only; omit --grid");
     const auto add = [&](const std::vector<BaseChoice>& more) { bases.insert(bases.end(), more.begin(), more.end()); };
     const auto most = std::numeric_limits<std::uint64_t>::max();
     if (grid == "auto") {
@@ -111,7 +111,7 @@ Searched choose_tests(const TuneOrder& order, TuneRequest& request) {
         if (!listed(name_of(test)))
             continue;
         if (of_heights)
-            throw InputError(fmt::format("--tests: {} and {} stand in one place; tune with one of them",
+            throw InputError(fmt::format("--tests: {} and {} exclude each other; tune with one of them",
                                          name_of(*of_heights), name_of(test)));
         of_heights = test;
     }
@@ -276,8 +276,8 @@ ExitCode tune_command(const TuneOrder& order, const fs::path& data_folder) {
         request.goal.error = std::min(bound, request.goal.error_of(result.point.outcome)) * (1 - 1e-9);
         if (round + 1 == most_rounds)
             throw InputError(
-                fmt::format("--error {}: the meshes found miss it by rounding only, the last with {:.17g}: "
-                            "ask for a little more",
+                fmt::format("--error {}: the meshes found exceed it by rounding only, the last with {:.17g}: "
+                            "give a slightly larger error",
                             order.error, measured / unit.model_units));
     }
 

@@ -39,8 +39,8 @@ void TuneOptions::add_to(CLI::App& tune) {
     tune.add_option("--metric", metric_, "error to use: rms or max");
     tune.add_option(
             "--tests", order_.tests,
-            "thresholds to search: normal, summed_height or curvature or mipmap, view; rank: of a Rank Test, with --metric max of a "
-            "Bound Test; with both, the better is taken; default: of the tests the job enables")
+            "thresholds to search: normal, summed_height or curvature or mipmap, view; rank: that of a Rank Test, with --metric max that of a "
+            "Bound Test; with both, the better is used; default: those of the tests that the job enables")
         ->delimiter(',')
         ->allow_extra_args(false);
     vary_given_ = tune.add_option("--vary", vary_,
@@ -54,7 +54,7 @@ void TuneOptions::add_to(CLI::App& tune) {
         ->delimiter(',')
         ->allow_extra_args(false);
     tune.add_option("--output", order_.output, "the tuned job; its figures beside it as .json, a lattice as .obj");
-    tune.add_option("--tried", order_.tried, "CSV file for a table of everything tried");
+    tune.add_option("--tried", order_.tried, "CSV file listing all meshes tried");
     tune.add_option("--jobs", order_.jobs, "threads; the result does not depend on them")
         ->check(CLI::Range(1u, most_jobs));
     tune.add_option("--set", order_.settings, "set one key of the job first")->take_all()->allow_extra_args(false);
@@ -65,7 +65,7 @@ TuneOrder TuneOptions::order() const {
     if (job_given_->count() > 0 && order.job_file.empty())
         refuse_usage("tune", "JOB is empty: name a job file, or leave it out for the default job");
     if ((triangles_given_->count() > 0) == (error_given_->count() > 0))
-        refuse_usage("tune", "say what to tune for: either --triangles N or --error E");
+        refuse_usage("tune", "give a goal: either --triangles N or --error E");
     if (triangles_given_->count() > 0 && order.triangles == 0)
         refuse_usage("tune", "--triangles 0: a mesh has at least one");
     if (error_given_->count() > 0 && !(order.error > 0 && std::isfinite(order.error)))
@@ -90,8 +90,8 @@ TuneOrder TuneOptions::order() const {
             else if (choice == "triangulation")
                 order.vary.triangulation = true;
             else if (choice != "none" || vary_.size() > 1)
-                refuse_usage(
-                    "tune", fmt::format("--vary {}: must be unit, generation or triangulation, or none alone", choice));
+                refuse_usage("tune",
+                             fmt::format("--vary {}: must be unit, generation or triangulation, or only none", choice));
         }
     }
     if (order.output.empty())

@@ -38,11 +38,12 @@ void WidthsOptions::add_to(CLI::App& widths) {
                     "screen_range, generation")
         ->delimiter(',')
         ->allow_extra_args(false);
-    bits_given_ = widths.add_option("--bits", bits_,
-                                    "total widths to try, in bits, as in 8..16; default: all that the format allows, "
-                                    "in steps where there are many");
+    bits_given_ =
+        widths.add_option("--bits", bits_,
+                          "total widths to try, in bits, as in 8..16; default: all widths that the format allows, "
+                          "in steps if there are many");
     flips_given_ = widths.add_option("--flips", flips_,
-                                     "limit for the knee: percent of the edges whose split decision differs from exact "
+                                     "limit for the knee: percentage of edges whose split decision differs from exact "
                                      "arithmetic; default: 0.5 more than at the widest");
     error_given_ = widths.add_option("--error", error_,
                                      "limit for the knee: RMS error of displaced positions in model units; "

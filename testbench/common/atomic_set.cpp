@@ -198,7 +198,7 @@ void AtomicSet::commit() {
             fmt::format("{}: cannot be replaced: {}; {}: make it and its folder writable, or write to "
                         "another folder",
                         file.string(), std::generic_category().message(error),
-                        all ? "all is as it was" : "not all could be put back as it was"));
+                        all ? "all is as it was" : "not all of it could be restored"));
     };
     for (const bool job : {false, true})
         for (const fs::path& file : taken_away_)

@@ -65,11 +65,11 @@ std::string read_all(int pipe) {
 ChildEnd run_in_child(const std::function<std::string()>& work, unsigned most_seconds) {
     std::array<int, 2> pipe{};
     if (::pipe(pipe.data()) != 0)
-        throw std::system_error(errno, std::generic_category(), "no pipe to a process");
+        throw std::system_error(errno, std::generic_category(), "cannot open a pipe to a process");
     std::fflush(nullptr);  // buffered output would be printed twice
     const pid_t child = ::fork();
     if (child < 0)
-        throw std::system_error(errno, std::generic_category(), "no process");
+        throw std::system_error(errno, std::generic_category(), "cannot start a process");
     if (child == 0) {
         ::close(pipe[0]);
         do_and_tell(work, most_seconds, pipe[1]);
@@ -81,7 +81,7 @@ ChildEnd run_in_child(const std::function<std::string()>& work, unsigned most_se
     int status = 0;
     while (::waitpid(child, &status, 0) < 0)
         if (errno != EINTR)
-            throw std::system_error(errno, std::generic_category(), "a process");
+            throw std::system_error(errno, std::generic_category(), "cannot wait for a process");
     if (WIFSIGNALED(status))
         end.failure = fmt::format("ended by signal {}, {}{}", WTERMSIG(status), ::strsignal(WTERMSIG(status)),
                                   WTERMSIG(status) == SIGALRM ? fmt::format(": over {} s", most_seconds) : "");

@@ -80,7 +80,7 @@ struct FaultOf {
         for (const double end : value)
             if (std::string fault = number(end); !fault.empty())
                 return fault;
-        return value[0] < value[1] ? "" : "has its low end not below its high end";
+        return value[0] < value[1] ? "" : "has a low end that is not below its high end";
     }
     std::string operator()(const std::array<double, 3>& value) const {
         if (key.kind != KeyKind::vector)

@@ -61,8 +61,9 @@ std::string suggestion(std::string_view unknown_name) {
     const KeyTable* group = find_table(near);
     const bool within_another = unknown_name.find('.') != std::string_view::npos;
     return group != nullptr && within_another
-               ? fmt::format("; did you mean the group `{0}`? It stands alone: write [{0}], then its keys ({1})", near,
-                             keys_text(*group))
+               ? fmt::format(
+                     "; did you mean the group `{0}`? It is a top-level table: write [{0}], then its keys ({1})", near,
+                     keys_text(*group))
                : fmt::format("; did you mean `{}`?", near);
 }
 
@@ -241,7 +242,7 @@ void set_key(Job& job, std::string_view name, std::string_view value) {
     const KeyTable* group = key == nullptr && !name.empty() ? find_table(name) : nullptr;
     if (group != nullptr) {
         throw InputError(
-            fmt::format("`{0}` is a group of keys, and one --set sets one key, as in --set {1}=...; `{0}` "
+            fmt::format("`{0}` is a group of keys, but one --set sets one key, as in --set {1}=...; `{0}` "
                         "has {2}",
                         name, group->keys.front().name, keys_text(*group)));
     }

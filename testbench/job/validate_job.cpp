@@ -55,14 +55,14 @@ void check_mesh(const Job::Mesh& mesh, Faults& faults) {
     check_file("mesh", reads_file(mesh.source), mesh.file, name_of(mesh.source), faults);
     check_fingerprint("mesh", mesh.fingerprint, mesh.file, faults);
     faults.unless((mesh.spacing & (mesh.spacing - 1)) == 0,
-                  "`mesh.spacing` = {}: a lattice needs a power of two, so that midpoints lie at centres of texels",
+                  "`mesh.spacing` = {}: a lattice needs a power of two, so that midpoints are at texel centres",
                   mesh.spacing);
     const bool round = mesh.source == MeshSource::cylinder || mesh.source == MeshSource::sphere;
     faults.unless(!round || mesh.columns == 0 || mesh.columns >= 3,
-                  "`mesh.columns` = {}, but a {} closes around itself only with 3 or more: raise mesh.columns",
-                  mesh.columns, name_of(mesh.source));
+                  "`mesh.columns` = {}, but a {} needs 3 or more to close: raise mesh.columns", mesh.columns,
+                  name_of(mesh.source));
     faults.unless(mesh.source != MeshSource::sphere || mesh.rows != 1,
-                  "`mesh.rows` = {}, but a sphere has 2 or more: raise mesh.rows", mesh.rows);
+                  "`mesh.rows` = {}, but a sphere needs 2 or more: raise mesh.rows", mesh.rows);
 }
 
 void check_map(const Job& job, Faults& faults) {
@@ -70,7 +70,7 @@ void check_map(const Job& job, Faults& faults) {
     check_file("map", map.source == MapSource::file, map.file, name_of(map.source), faults);
     check_fingerprint("map", map.fingerprint, map.file, faults);
     faults.unless(map.source != MapSource::text || !map.text.empty(),
-                  "`map.text` is empty, but `map.source` = \"text\": give it a text");
+                  "`map.text` is empty, but `map.source` = \"text\": set map.text");
     if (map.source != MapSource::file) {
         const std::int64_t most = std::int64_t{1} << job.formats.texture_integer;
         faults.unless(map.width <= most && map.height <= most,
@@ -86,18 +86,18 @@ void check_heights(const Job& job, Faults& faults) {
         return;
     faults.unless(
         job.hardware.displacement_filter == MapFilter::nearest,
-        "`map.heights` = \"fitted\", but `hardware.displacement_filter` = \"{}\" mixes the heights of texels: set "
+        "`map.heights` = \"fitted\", but `hardware.displacement_filter` = \"{}\" interpolates between texels: set "
         "it to \"nearest\"",
         name_of(job.hardware.displacement_filter));
     faults.unless(
         !job.hardware.one_texel_from_map || job.hardware.height_test != HeightTest::summed_height,
-        "`map.heights` = \"fitted\", but with `hardware.one_texel_from_map` = true the Summed Height Test takes a "
-        "fitted height for the map's: set it to false");
+        "`map.heights` = \"fitted\", but with `hardware.one_texel_from_map` = true the Summed Height Test uses "
+        "fitted heights instead of the map's: set it to false");
 }
 
 void check_light(const Job::Hardware& hardware, Faults& faults) {
     faults.unless(hardware.light != std::array<double, 3>{},
-                  "`hardware.light` = {} has no direction: give it one, such as [0, 0, 1]", toml_value(hardware.light));
+                  "`hardware.light` = {} has no direction: set one, such as [0, 0, 1]", toml_value(hardware.light));
 }
 
 void check_rank_view(const Job& job, Faults& faults) {
@@ -106,10 +106,11 @@ void check_rank_view(const Job& job, Faults& faults) {
     faults.unless(job.hardware.height_test == HeightTest::rank,
                   "`tests.rank_view` = \"{}\", but `hardware.height_test` = \"{}\" has no ranks: set it to \"rank\"",
                   name_of(job.tests.rank_view), name_of(job.hardware.height_test));
-    faults.unless(job.hardware.test_order == TestOrder::cheap_first,
-                  "`tests.rank_view` = \"{}\" needs `hardware.test_order` = \"cheap_first\": the View Test finds the "
-                  "distances that the Rank Test asks for",
-                  name_of(job.tests.rank_view));
+    faults.unless(
+        job.hardware.test_order == TestOrder::cheap_first,
+        "`tests.rank_view` = \"{}\" needs `hardware.test_order` = \"cheap_first\": the View Test computes the "
+        "distances that the Rank Test needs",
+        name_of(job.tests.rank_view));
 }
 
 void check_hardware(const Job::Hardware& hardware, Faults& faults) {
@@ -122,7 +123,7 @@ void check_hardware(const Job::Hardware& hardware, Faults& faults) {
                   "`hardware.tests_units` = 2: a design has 1 Tessellation Tests unit, or 3, one for each edge");
     faults.unless(hardware.tests_units == 1 || hardware.work == Work::triangle,
                   "`hardware.tests_units` = {}, but `hardware.work` = \"family\" has one Tessellation Tests unit: set "
-                  "`hardware.edge_lanes` and `hardware.normal_tests` in its place",
+                  "`hardware.edge_lanes` and `hardware.normal_tests` instead",
                   hardware.tests_units);
     const bool lanes = hardware.work == Work::family && hardware.test_order == TestOrder::cheap_first;
     for (const auto& [key, value] :
@@ -146,7 +147,7 @@ void check_traces(const Job& job, Faults& faults) {
     const Job::Output& output = job.output;
     const char* const wanted = output.vcd ? "vcd" : output.timeline ? "timeline" : nullptr;
     faults.unless(wanted == nullptr || job.mode == Mode::timed,
-                  "`output.{}` = true, but only timed mode has cycles to show: set mode = \"timed\"",
+                  "`output.{}` = true, but only timed mode has cycles to trace: set mode = \"timed\"",
                   wanted == nullptr ? "" : wanted);
     faults.unless(output.trace_from <= output.trace_to,
                   "`output.trace_from` = {} comes after `output.trace_to` = {}: lower it, or raise trace_to",

@@ -25,10 +25,10 @@ void check(const std::string& table, const fs::path& file, const std::string& wa
         return;
     const std::string found = fingerprint_of(file);
     if (!found.empty() && found != wanted)
-        throw InputError(
-            fmt::format("{0}.fingerprint = \"{1}\": {2} has {3}: it was changed since this job was written, or is "
-                        "another file; run anew, with {0}.fingerprint = \"\" where the job has it",
-                        table, wanted, file.string(), found));
+        throw InputError(fmt::format(
+            "{0}.fingerprint = \"{1}\": {2} has {3}: the file was changed since this job was written, or is "
+            "another file; to use it, set {0}.fingerprint = \"\" in the job and run again",
+            table, wanted, file.string(), found));
 }
 
 }  // namespace

@@ -78,7 +78,7 @@ std::string unused_range_remark(const MapRange& range, const HeightMap& map) {
         return {};
     return fmt::format(
         "the map's values, {:.6g} to {:.6g}, are {:.2g} % of the {:.6g} to {:.6g} that displacement.scale "
-        "spans: map.range = \"data\" lets it span what occurs",
+        "spans: set map.range = \"data\" to span only values that occur",
         low * map.source_units, high * map.source_units, 100 * part, map.span_low * map.source_units,
         map.span_high * map.source_units);
 }

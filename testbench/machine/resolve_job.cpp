@@ -163,7 +163,7 @@ class Resolver {
         scale = rounded(scale, scale);
         found("displacement.scale", fmt::format("{} of the base mesh's largest extent, {:.6g}{}",
                                                 flat_ >= 0 ? "flat: an eighth" : "a fortieth", base_.largest(),
-                                                reach > span ? ", less because values go beyond map.range" : ""));
+                                                reach > span ? ", reduced because values exceed map.range" : ""));
     }
 
     /// Lowest and highest displacement of the first and of the last frame; those in between stay within.
@@ -213,9 +213,9 @@ class Resolver {
         if (no_up)
             found("camera.up", along_up   ? "seen along the up axis: the front is at the bottom"
                                : mesh_.up ? "as in the run that mesh.file names"
-                               : job.mesh.source != MeshSource::file ? "z, as for all meshes but OBJ files"
+                               : job.mesh.source != MeshSource::file ? "z, as for all meshes except OBJ files"
                                : flat_ < 0                           ? "y, as in most OBJ files"
-                                                                     : "the axis the mesh is flat in");
+                                                                     : "the axis along which the mesh is flat");
         if (is_automatic(camera.near_plane)) {
             const double distance = glm::length(view) * near_part;
             camera.near_plane = rounded(distance, distance);
@@ -227,7 +227,7 @@ class Resolver {
         for (const FoundValue& value : result_.found) {
             const Key& key = *find_key(value.key);
             if (const std::string fault = complaint(key, key.get(result_.job)); !fault.empty())
-                throw InputError(fmt::format("{}: it follows from a base mesh of {:.6g} model units{}", fault,
+                throw InputError(fmt::format("{}: derived from a base mesh of {:.6g} model units{}", fault,
                                              base_.largest(), place_and_remedy()));
         }
     }
@@ -256,8 +256,7 @@ ResolvedJob resolve_job(const Job& job, const BaseMesh& mesh, const HeightMap& m
 
 void require_resolved(const Job& job, const char* user) {
     if (const std::string key = automatic_key(job); !key.empty())
-        throw std::logic_error(
-            fmt::format("{}: {} is automatic; the job must have gone through resolve_job()", user, key));
+        throw std::logic_error(fmt::format("{}: {} is \"auto\"; call resolve_job() on the job first", user, key));
 }
 
 }  // namespace tessera

@@ -96,15 +96,15 @@ void Simulation::check_limits(const Pipeline& machine) const {
     if (machine.clock.out_of_time())
         throw ResourceError(
             fmt::format("timing.clock_period = {} ps: after cycle {} simulated time ends, at 2^64 - 1 ps; lower the "
-                        "period, which changes no figure but those in seconds, or the latencies under [timing]",
+                        "period, which changes only the figures in seconds, or the latencies under [timing]",
                         setup.design.timing.cycle_picoseconds, machine.clock.last_cycle()));
     const bool fifo = setup.design.queue.order == TriangleOrder::fifo;
     if (machine.triangle_queue.overflowed())
-        throw ResourceError(
-            fmt::format("hardware.queue_capacity = {}: in cycle {} a triangle found the Triangle Queue full; raise the "
-                        "capacity, or set {}hardware.queue_overflow = \"spill\"",
-                        setup.design.queue.capacity, machine.clock.last_cycle(),
-                        fifo ? "hardware.queue_order = \"lifo\" or " : ""));
+        throw ResourceError(fmt::format(
+            "hardware.queue_capacity = {}: the Triangle Queue was full when a triangle arrived in cycle {}; raise the "
+            "capacity, or set {}hardware.queue_overflow = \"spill\"",
+            setup.design.queue.capacity, machine.clock.last_cycle(),
+            fifo ? "hardware.queue_order = \"lifo\" or " : ""));
     if (machine.triangle_queue.off_chip_memory_full())
         throw ResourceError(fmt::format(
             "hardware.off_chip_triangles = {}: in cycle {} a full Triangle Queue (hardware.queue_capacity = "
@@ -129,9 +129,9 @@ std::string Simulation::stuck(const HostedMachine& machine, const MachineSetup& 
     std::string text =
         clock.stalled() ? fmt::format(
                               "livelock: for more than limits.cycles_without_progress = {} cycles of work, up to cycle "
-                              "{}, no triangle has been decided or lit; if the design is just slow, raise the limit\n",
+                              "{}, no triangle has been decided or lit; if the design is only slow, raise the limit\n",
                               clock.most_without_progress(), clock.last_cycle())
-                        : fmt::format("deadlock: the simulation has nothing left to do{}, yet work is left\n",
+                        : fmt::format("deadlock: no events are pending{}, but work remains\n",
                                       timed ? fmt::format(" after cycle {}", clock.last_cycle()) : std::string{});
     const auto& counts = pipeline.pass_or_tessellate.counts();
     text += fmt::format("  host: {} of {} base triangles sent{}\n", host.sent(), host.total(),
@@ -152,7 +152,7 @@ std::string Simulation::stuck(const HostedMachine& machine, const MachineSetup& 
     if (!clock.stalled() && pipeline.triangle_queue.waiting() > 0 && setup.design.queue.capacity > 0 &&
         setup.design.queue.overflow == QueueOverflow::stall)
         text += fmt::format(
-            "  a full queue may not spill: raise hardware.queue_capacity = {}, or set "
+            "  a full queue does not spill: raise hardware.queue_capacity = {}, or set "
             "hardware.queue_overflow = \"spill\"\n",
             setup.design.queue.capacity);
     return text;

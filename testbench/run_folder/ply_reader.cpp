@@ -26,7 +26,7 @@ class PlyFile {
         std::error_code failed;
         const std::filesystem::file_status status = std::filesystem::status(path, failed);
         if (status.type() == std::filesystem::file_type::not_found)
-            refuse("there is no such file");
+            refuse("no such file");
         if (status.type() != std::filesystem::file_type::regular)
             refuse("this is not a file that can be read as a mesh");
         size_ = std::filesystem::file_size(path, failed);
@@ -71,7 +71,7 @@ class PlyFile {
                                printable(text), words));
         const std::uint64_t count = std::stoull(digits);
         if (count > most_elements)
-            refuse(fmt::format("line {} of the header, \"{}\": {} are the most", lines_, text, most_elements));
+            refuse(fmt::format("line {} of the header, \"{}\": the limit is {}", lines_, text, most_elements));
         return count;
     }
 

@@ -25,26 +25,26 @@ void find_input(const char* key, const std::string& text, const fs::path& file, 
         return;
     const bool in_data = text.rfind("data:", 0) == 0;
     throw InputError(fmt::format(
-        "{}: {} = \"{}\": {} is not there; {}", (fs::path(job.folder) / "job.toml").string(), key, text,
+        "{}: {} = \"{}\": {} does not exist; {}", (fs::path(job.folder) / "job.toml").string(), key, text,
         file.lexically_normal().string(),
         in_data ? "name the data folder with --data FOLDER"
-                : "put it back where it was when the job ran, or run the job again with the file's new place"));
+                : "restore it where it was when the job ran, or run the job again with the file's new path"));
 }
 
 Job read_run_job(const fs::path& folder) {
     std::error_code failed;
     const fs::file_status status = fs::status(folder, failed);
     if (fs::is_regular_file(status))
-        throw InputError(fmt::format("{}: is a file; name the folder of a run that it lies in", folder.string()));
+        throw InputError(fmt::format("{}: is a file; name the run folder that contains it", folder.string()));
     if (!fs::is_directory(status))
         throw InputError(
             fmt::format("{}: no such folder; name the folder of a run, as `tessera run` prints it", folder.string()));
     const fs::path job_file = folder / "job.toml";
     if (!is_there(job_file))
-        throw InputError(
-            fmt::format("{}: there is no job.toml, so this is no run's folder, or the run was interrupted; name one as "
-                        "`tessera run` prints it",
-                        folder.string()));
+        throw InputError(fmt::format(
+            "{}: there is no job.toml, so this is not a run folder, or the run was interrupted; name a folder as "
+            "`tessera run` prints it",
+            folder.string()));
     Job job = read_job(job_file);
     validate(job);
     if (job.frames.count > 1)
@@ -55,7 +55,7 @@ Job read_run_job(const fs::path& folder) {
 
 void require_numbers(const fs::path& folder, const Job& job) {
     if (const std::string key = automatic_key(job); !key.empty())
-        throw InputError(fmt::format("{}: {} = \"auto\", which no run writes into its folder: run the job again",
+        throw InputError(fmt::format("{}: {} = \"auto\", which a run never writes into its folder: run the job again",
                                      (folder / "job.toml").string(), key));
 }
 

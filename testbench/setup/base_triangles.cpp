@@ -55,7 +55,7 @@ void round_base_triangles(const BaseMesh& original, const ModelScale& model_scal
     const char* const remedy =
         mesh.beyond_map
             ? "choose a smaller mesh.spacing, a smaller map or a larger formats.texture_integer"
-            : "let each triangle repeat the map less often, or use a smaller map or a larger formats.texture_integer";
+            : "make each triangle repeat the map less often, or use a smaller map or a larger formats.texture_integer";
     std::vector<datapath::Vertex> vertices;
     vertices.reserve(mesh.vertices.size());
     for (const BaseVertex& base : mesh.vertices) {
@@ -95,8 +95,9 @@ void round_base_triangles(const BaseMesh& original, const ModelScale& model_scal
             "every base triangle collapses when rounded to the position's and texture coordinate's formats: "
             "use wider formats (formats.position_bits, formats.texture_fraction)");
     if (scene.base_dropped > 0)
-        scene.remarks.push_back(fmt::format(
-            "{} base triangles collapsed when rounded to the hardware's formats and were dropped", scene.base_dropped));
+        scene.remarks.push_back(
+            fmt::format("{} base triangles collapsed when rounded to the hardware's formats, and were dropped",
+                        scene.base_dropped));
     if (scene.texture_clamped > 0)
         scene.remarks.push_back(
             fmt::format("{} base vertices have texture coordinates outside 0..1, and were set to the map's border; if "

@@ -40,7 +40,7 @@ void check_camera(const CameraSettings& camera, const FormatSettings& formats, F
     faults.unless(apart, "`camera.eye` = {} and `camera.target` = {} are the same point: move one of them",
                   text_of(eye), text_of(target));
     const bool upward = is_automatic(camera.up) || safe_length(up) > 0;
-    faults.unless(upward, "`camera.up` = {} has no direction: give it one, such as [0, 0, 1]", text_of(up));
+    faults.unless(upward, "`camera.up` = {} has no direction: set one, such as [0, 0, 1]", text_of(up));
     // Below a sine of 1e-6, rounding errors would determine the picture's roll.
     const auto sine = [](const glm::dvec3& a, const glm::dvec3& b) {
         return safe_length(glm::cross(a, b)) / (safe_length(a) * safe_length(b));
@@ -48,8 +48,8 @@ void check_camera(const CameraSettings& camera, const FormatSettings& formats, F
     const bool parallel = known && !is_automatic(camera.up) && apart && upward &&
                           sine(brought_near_one(view), brought_near_one(up)) <= 1e-6;
     faults.unless(!parallel,
-                  "`camera.up` = {} is parallel to the view direction {} (camera.target - camera.eye): turn up by "
-                  "a right angle",
+                  "`camera.up` = {} is parallel to the view direction {} (camera.target - camera.eye): choose "
+                  "another direction",
                   text_of(up), text_of(view));
     const std::int64_t integer_bits = formats.screen_bits - formats.screen_fraction - 1;
     if (integer_bits >= 0) {

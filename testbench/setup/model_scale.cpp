@@ -36,8 +36,8 @@ ModelScale fit_model(const BaseMesh& mesh, const DisplacementRange& displacement
     const double steps = std::ldexp(std::max({half.x, half.y, half.z}) * result.scale, position.fraction);
     if (steps < fewest_steps)
         throw InputError(fmt::format(
-            "{}: the displacement, {:.3g} to {:.3g} model units, is so large against the mesh, half of which "
-            "is {:.3g}, that the mesh spans {:.3g} steps of its position format (at least {} are needed): "
+            "{}: the displacement, {:.3g} to {:.3g} model units, is so large compared with the mesh (half its size "
+            "is {:.3g}) that the mesh spans {:.3g} steps of its position format (at least {} are needed): "
             "lower displacement.scale or displacement.bias, check the map's values, or raise "
             "formats.position_bits",
             map, displacement.bias, displacement.bias + displacement.range, std::max({half.x, half.y, half.z}), steps,

@@ -29,7 +29,7 @@ const char* remedy(std::string_view register_name) {
         return "use a smaller map or raise formats.texture_integer";
     if (register_name == "tests.generation_limit")
         return "lower tests.generation_limit or raise formats.generation_bits";
-    return "change the value or formats that it is made of";
+    return "change the value or the formats that determine it";
 }
 
 /// Checks that every value fits its register.
@@ -66,18 +66,18 @@ void remark_on_bound(const SceneSettings& settings, const BaseMesh& mesh, Prepar
         return;
     const auto unless = [&](bool fine, const char* why) {
         if (!fine)
-            scene.remarks.push_back(fmt::format("tests.bound_threshold promises nothing{}: {}",
+            scene.remarks.push_back(fmt::format("tests.bound_threshold is not guaranteed{}: {}",
                                                 formats.distances ? " in the picture" : "", why));
     };
-    unless(!settings.tests.view, "the View Test may keep an edge whole that is needed; set tests.view = false");
+    unless(!settings.tests.view, "the View Test may stop a split that is needed; set tests.view = false");
     unless(settings.triangulation == datapath::Triangulation::greatest_rank,
-           "cuts in another order leave other edges; set hardware.triangulation = \"greatest_rank\"");
+           "splits in another order give other edges; set hardware.triangulation = \"greatest_rank\"");
     if (!formats.distances)
         return;
     constexpr double whole_map = 65536;  // codes
-    unless(mesh.beyond_map, "radii are those of a flat base mesh, mesh.source = \"lattice\"");
+    unless(mesh.beyond_map, "radii hold only for a flat base mesh, mesh.source = \"lattice\"");
     unless(scene.rank_tables.highest_bound_threshold >= bound_threshold(whole_map, formats.bound_bits),
-           "formats.bound_bits leave no room for all that depends on one another; raise them");
+           "formats.bound_bits is too small for the bounds of dependent midpoints; raise it");
 }
 
 /// Adds remarks on the Rank Test's limits on a base mesh, and on remedies.
@@ -86,7 +86,7 @@ void remark_on_base(const std::vector<TextureTriangle>& base, PreparedScene& sce
     std::vector<std::string> limits;
     if (tables.least_error > 0) {
         limits.push_back(fmt::format(
-            "whatever its thresholds, errors of up to {:.2g} of full scale remain, since midpoints do not reach every texel",
+            "errors of up to {:.2g} of full scale remain at any threshold, since midpoints do not reach every texel",
             tables.least_error / scene.map.highest_code()));
         if (const std::uint64_t whole = count_whole_base_edges(base, scene.registers.formats); whole > 0)
             limits.push_back(fmt::format(
@@ -94,14 +94,14 @@ void remark_on_base(const std::vector<TextureTriangle>& base, PreparedScene& sce
     }
     if (tables.clashes > 0)
         limits.push_back(
-            fmt::format("{} midpoints share a texel of the Rank Table with another and take the greater rank: more "
+            fmt::format("{} midpoints share a texel of the Rank Table with another and use the greater rank: more "
                         "triangles than are needed, and no bound on the error",
                         tables.clashes));
     if (!limits.empty())
         scene.remarks.push_back(fmt::format(
-            "the Rank Test serves this base mesh only in part: {}. mesh.source = \"lattice\" suits it, with a "
+            "the Rank Test is limited on this base mesh: {}. Use mesh.source = \"lattice\" with a "
             "mesh.spacing that divides each side on which the map repeats; the Summed Height, Curvature and "
-            "Mipmap Tests serve any base mesh",
+            "Mipmap Tests support any base mesh",
             fmt::join(limits, "; ")));
 }
 
@@ -185,8 +185,8 @@ PreparedScene prepare_model(const SceneSettings& settings, const BaseMesh& mesh,
     if (settings.tests.highlight && !set_highlight_test(settings.tests, towards_light(settings.light), view.backward,
                                                         formats, registers.tests, saturated))
         scene.remarks.emplace_back(
-            "hardware.light shines straight towards the viewer: there is no highlight, and the Highlight "
-            "Test never asks for a split");
+            "hardware.light points directly away from the viewer: there is no highlight, and the Highlight "
+            "Test never requests a split");
     registers.light = make_light(settings.light, view, formats.normal, saturated);
     registers.triangulation = settings.triangulation;
     registers.back_face_culling = settings.back_face_culling;

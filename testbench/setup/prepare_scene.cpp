@@ -54,7 +54,7 @@ BaseMesh base_mesh(const Scene& scene) {
             mesh.triangles.push_back(scene.triangles[k]);
     }
     if (mesh.triangles.empty())
-        throw InputError(fmt::format("of {} triangles none has an area", scene.triangles.size()));
+        throw InputError(fmt::format("none of the {} triangles has an area", scene.triangles.size()));
     complete_smooth_normals(mesh);
     complete_tangent_frames(mesh);
     measure_texture_scale(mesh);
@@ -91,7 +91,8 @@ PreparedScene prepare(const Scene& scene) {
     PreparedScene prepared = prepare_model(scene.settings, mesh, height_map(scene), "map");
     prepared.remarks.insert(prepared.remarks.begin(), mesh.repairs.begin(), mesh.repairs.end());
     if (mesh.dropped_degenerate > 0)
-        prepared.remarks.push_back(fmt::format("triangles left out for want of an area: {}", mesh.dropped_degenerate));
+        prepared.remarks.push_back(
+            fmt::format("triangles dropped because they have no area: {}", mesh.dropped_degenerate));
     return prepared;
 }
 

@@ -36,7 +36,7 @@ int summed_height_bits(std::int64_t wanted, std::uint64_t largest_sum) {
     if (!holds(bits))
         throw InputError(
             fmt::format("formats.summed_height_bits = {}: this mesh's largest rectangle sums up to {}, which needs {} "
-                        "bits; use that, or 0 to choose automatically",
+                        "bits; set that number, or 0 to choose automatically",
                         bits, largest_sum, 64 - datapath::leading_zeros(largest_sum)));
     return bits;
 }

@@ -86,7 +86,7 @@ def try_clicks(driver, data):
               driver.find_elements(By.CSS_SELECTOR, "#comparison tr.differs")}
     keys = {key for each in rows for key in each["settings"]}
     different = {key for key in keys if rows[0]["settings"].get(key) != rows[1]["settings"].get(key)}
-    check(different <= marked and not (keys - different) & marked, "the keys that differ are marked, and no others")
+    check(different <= marked and not (keys - different) & marked, "exactly the keys that differ are marked")
     return both
 
 
@@ -100,7 +100,7 @@ def try_selection(driver, data):
     count = int(re.match(r"(\d+) selected", driver.find_element(By.ID, "selected").text)[1])
     grey, selected, front = colours(driver)
     check(0 < count < len(data["rows"]), f"a box selects designs, {count}")
-    check(selected + front == count and grey > 0, "their lines alone are coloured in the parallel coordinates")
+    check(selected + front == count and grey > 0, "only their lines are coloured in the parallel coordinates")
     driver.find_element(By.ID, "clear").click()
     settle()
     check(colours(driver)[0] == 0, "Clear selection")
@@ -155,7 +155,7 @@ def main():
         check(address.endswith(f"#runs={both[0]},{both[1]}"), "the address names the designs")
         driver.get("about:blank")
         open_page(driver, address)
-        check(driver.execute_script("return chosen") == both, "and opens them again")
+        check(driver.execute_script("return chosen") == both, "the address opens them again")
         if len(sys.argv) > 2:
             driver.execute_script("window.scrollTo(0, 0)")
             settle()

@@ -42,14 +42,14 @@ struct DecisionName {
 };
 constexpr DecisionName decision_names[] = {
     {"NT", "Normal Test"},
-    {"SHT", "Summed Height Test, or the test in its place"},
+    {"SHT", "Summed Height Test or its replacement"},
     {"VT", "View Test"},
     {"TCT", "Tex Coord Test"},
     {"GT", "Generation Test"},
     {"HT", "Highlight Test"},
     {"split", "whether the edge is split"},
-    {"cut", "with greatest_rank, which of the edges that ask to be split is"},
-    {"diagonal", "which diagonal cuts the quadrilateral left by two split edges"},
+    {"cut", "with greatest_rank: which of the edges that request a split is split"},
+    {"diagonal", "diagonal of the quadrilateral left by two split edges"},
     {"in_front", "whether a vertex lies in front of the near plane"},
 };
 

@@ -29,7 +29,7 @@ class RegisterCheck {
           golden_(golden),
           job_(golden.job()),
           view_(golden::make_view(golden.scene().camera, golden.scene().placement)),
-          judge_(result, "registers", "every register; rounded as its format says") {}
+          judge_(result, "registers", "every register, rounded to its format") {}
 
     void run() {
         check_model_scale();
@@ -104,7 +104,7 @@ class RegisterCheck {
                            (hardware.fraction == formats_.position.fraction || !fits(hardware.fraction + 1, 1 + about)),
                        [&] {
                            return fmt::format(
-                               "formats.view_distance.fraction = {} is not the most with which the distance of the "
+                               "formats.view_distance.fraction = {} is not the largest with which the distance of the "
                                "farthest position, {:.6g} world units, fits {} bits",
                                hardware.fraction, farthest, hardware.bits);
                        });
@@ -122,7 +122,7 @@ class RegisterCheck {
                                                                              : 48),
                        [&] {
                            return fmt::format(
-                               "formats.summed_height.bits = {}, where the largest rectangle's sum may be "
+                               "formats.summed_height.bits = {}, but the largest rectangle's sum is up to "
                                "{:.0f} and formats.summed_height_bits = {}",
                                hardware.bits, largest, wanted);
                        });
@@ -160,7 +160,7 @@ class RegisterCheck {
         }
         const double limit = number(formats_.position.highest) / lsb_per_unit(formats_.position);
         judge_.require((reach + height) * scale <= limit, [&] {
-            return fmt::format("the displaced mesh reaches {:.6g} world units, a position {:.6g}",
+            return fmt::format("the displaced mesh reaches {:.6g} world units; a position holds up to {:.6g}",
                                (reach + height) * scale, limit);
         });
         // The largest scale that leaves half of the range free: S's register holds at most twice the range of heights.
@@ -332,7 +332,7 @@ class RegisterCheck {
         constexpr double about = 1e-9;
         judge_.require(
             transform.exponent >= 0 && reach <= 1 + about && (transform.exponent == 0 || reach > 0.5 - about), [&] {
-                return fmt::format("transform.exponent = {}, with which the rows reach {:.6g}: not in 1/2 .. 1",
+                return fmt::format("transform.exponent = {}: the rows' largest value is {:.6g}, not in 1/2 .. 1",
                                    transform.exponent, reach);
             });
         // Values beyond every possible w are equivalent.
@@ -388,7 +388,7 @@ class BaseCheck {
             ++next;
         }
         judge_.require(next == setup_.base_triangles.size(), [&] {
-            return fmt::format("{} base triangles, of which the mesh has {}", setup_.base_triangles.size(), next);
+            return fmt::format("{} base triangles, but the mesh has {}", setup_.base_triangles.size(), next);
         });
     }
 

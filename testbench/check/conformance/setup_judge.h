@@ -43,7 +43,7 @@ class Judge {
             return;
         ++part.wrong;
         if (result_.first_wrong.empty())
-            result_.first_wrong = fmt::format("{}: {} = {:.17g}, golden has {:.17g}, allowed is {}{:.17g} to {:.17g}",
+            result_.first_wrong = fmt::format("{}: {} = {:.17g}, golden {:.17g}, allowed {}{:.17g} to {:.17g}",
                                               part.name, name(), hardware, golden, bound.low_allowed ? "" : "above ",
                                               golden + bound.low - leeway, golden + bound.high + leeway);
     }

@@ -84,7 +84,7 @@ class TableCheck {
     }
 
     void check_displacement_map() {
-        Judge judge(result_, "displacement map", "every code, to nearest; or as the host fitted it");
+        Judge judge(result_, "displacement map", "every code, to nearest or as fitted by the host");
         const golden::Map& map = golden_.map();
         const bool fitted = golden_.job().map.heights == MapHeights::fitted;
         each_entry(judge, host_.displacement_map, registers_.displacement_map, map.width(), map.height(),
@@ -155,7 +155,7 @@ class TableCheck {
     }
 
     void check_rank_table() {
-        Judge judge(result_, "rank table", "every entry as the host ranked it");
+        Judge judge(result_, "rank table", "every entry, as ranked by the host");
         const golden::RankTable& table = golden_.map().rank_table();
         each_entry(judge, host_.summed_height_table, registers_.height_table, static_cast<int>(table.columns),
                    static_cast<int>(table.rows), [&](std::uint32_t x, std::uint32_t y, std::uint64_t entry) {
@@ -170,7 +170,7 @@ class TableCheck {
     }
 
     void check_curvature_table() {
-        Judge judge(result_, "curvature table", "every entry as the host fitted it");
+        Judge judge(result_, "curvature table", "every entry, as fitted by the host");
         const std::vector<golden::Curvature>& cells = golden_.map().curvature_table().cells;
         each_entry(judge, host_.summed_height_table, registers_.height_table, static_cast<int>(cells.size()), 1,
                    [&](std::uint32_t x, std::uint32_t, std::uint64_t entry) {

@@ -87,15 +87,15 @@ std::string texel_borders_warning(const TexelBorderCount& count, const Job& job,
             remedy += "; ";
         remedy += other;
     } else if (share > least_share_of_a_file) {
-        remedy = fmt::format("texture coordinates of the mesh that are whole texels, multiples of 1/{} and 1/{}", width,
-                             height);
+        remedy =
+            fmt::format("a mesh with texture coordinates at whole texels, multiples of 1/{} and 1/{}", width, height);
     }
     if (remedy.empty())
         return {};
     return fmt::format(
         "{} of {} edges ({:.1f} %) have an end or midpoint that rounding puts one LSB below a texel's "
         "border, "
-        "where it reads the texel before; wider formats do not help. Use {}",
+        "so that it reads the preceding texel; wider formats do not help. Use {}",
         count.below, count.edges, 100 * share, remedy);
 }
 

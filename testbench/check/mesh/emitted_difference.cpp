@@ -51,7 +51,7 @@ EmittedDifference::EmittedDifference(const EmittedMesh& mesh, std::size_t base_t
         if (triangle.base < base_triangles)
             ++offsets_[triangle.base + 2];
         else if (++extra_ == 1)
-            note("a triangle of a base triangle that does not exist", triangle);
+            note("a triangle from a base triangle that does not exist", triangle);
     for (std::size_t b = 2; b < offsets_.size(); ++b)
         offsets_[b] += offsets_[b - 1];
     order_.resize(offsets_.back());
@@ -107,10 +107,10 @@ void EmittedDifference::end() {
             note("a triangle is missing", **wanted++);
         } else if (wanted == missing.end() || place_of(**there) < place_of(**wanted)) {
             ++extra_;
-            note("a triangle too many", **there++);
+            note("an extra triangle", **there++);
         } else {
             if (first_.empty())
-                first_ = fmt::format("base triangle {}: a triangle differs: {}; it should be {}", (*there)->base,
+                first_ = fmt::format("base triangle {}: a triangle differs: {}; expected {}", (*there)->base,
                                      triangle_text(**there, formats_), triangle_text(**wanted, formats_));
             ++differing_;
             ++wanted;

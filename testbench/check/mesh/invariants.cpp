@@ -86,35 +86,35 @@ std::uint64_t InvariantResult::violations() const {
 std::vector<InvariantFigure> invariant_figures(const InvariantResult& r) {
     using Kind = InvariantFigure::Kind;
     return {
-        {"triangles", Kind::fact, r.triangles, "triangle", "looked at, culled ones included"},
-        {"edges", Kind::fact, r.edges, "edge", "evaluated by the datapath by itself"},
+        {"triangles", Kind::fact, r.triangles, "triangle", "checked, culled ones included"},
+        {"edges", Kind::fact, r.edges, "edge", "evaluated by the bare datapath"},
         {"base_triangles", Kind::fact, r.base_triangles, "triangle", "of the base mesh"},
         {"base_edges", Kind::fact, r.base_edges, "edge", "of the base mesh, by position"},
-        {"border_base_edges", Kind::fact, r.border_base_edges, "edge", "of these with one base triangle"},
-        {"non_manifold_base_edges", Kind::fact, r.non_manifold_base_edges, "edge", "with more than two"},
+        {"border_base_edges", Kind::fact, r.border_base_edges, "edge", "of these, with one base triangle"},
+        {"non_manifold_base_edges", Kind::fact, r.non_manifold_base_edges, "edge", "of these, with more than two"},
         {"texture_seams", Kind::fact, r.texture_seams, "edge",
-         "base edges whose two sides differ in texture coordinates by other than whole periods"},
+         "base edges whose two sides differ in texture coordinates, not by whole periods"},
         {"creases", Kind::fact, r.creases, "edge", "base edges whose two sides differ in normal or tangent only"},
-        {"t_vertices", Kind::violation, r.t_vertices, "vertex", "on an edge that another of its triangles has whole"},
-        {"cracks", Kind::violation, r.cracks, "edge", "without the triangles they should have on either side"},
-        {"inconsistent_vertices", Kind::violation, r.inconsistent_vertices, "vertex",
-         "that differ from one triangle to another"},
+        {"t_vertices", Kind::violation, r.t_vertices, "vertex",
+         "on an edge that another of its triangles does not split"},
+        {"cracks", Kind::violation, r.cracks, "edge", "without the expected triangles on either side"},
+        {"inconsistent_vertices", Kind::violation, r.inconsistent_vertices, "vertex", "that differ between triangles"},
         {"missing_triangles", Kind::violation, r.missing_triangles, "triangle",
-         "that the datapath by itself makes, and the machine did not emit"},
+         "made by the bare datapath, but not emitted by the machine"},
         {"extra_triangles", Kind::violation, r.extra_triangles, "triangle",
-         "emitted, and not made by the datapath by itself"},
+         "emitted, but not made by the bare datapath"},
         {"differing_triangles", Kind::violation, r.differing_triangles, "triangle",
-         "emitted in their place, but not bit for bit"},
+         "emitted in their place, but not bit-identical"},
         {"generation_violations", Kind::violation, r.generation_violations, "triangle",
          "with a vertex beyond the generation limit"},
         {"unfinished", Kind::violation, r.unfinished, "run",
-         "1: the datapath by itself went on splitting far beyond this mesh, and was stopped"},
+         "1: the bare datapath kept splitting far beyond this mesh and was stopped"},
         {"collapsed", Kind::rounding, r.collapsed, "triangle", "no area in texture space"},
         {"turned_over", Kind::rounding, r.turned_over, "triangle", "turned over in texture space"},
         {"displaced_collapsed", Kind::rounding, r.displaced_collapsed, "triangle",
          "two corners at one displaced position"},
         {"open_texture_seam_edges", Kind::input, r.open_texture_seam_edges, "edge",
-         "emitted edges along texture seams that do not meet: the map, or a table of it, is not continuous there"},
+         "emitted edges along texture seams that do not meet: the map, or a table made from it, is not continuous there"},
         {"open_crease_edges", Kind::input, r.open_crease_edges, "edge",
          "likewise along creases: the base mesh's normals or tangents are not continuous"},
     };
@@ -140,7 +140,7 @@ InvariantResult check_invariants(const EmittedMesh& mesh, const MachineSetup& se
     if (result.first_violation.empty())
         result.first_violation = walk.difference.first();
     if (!finished && result.first_violation.empty())
-        result.first_violation = fmt::format("the datapath by itself had not finished after {} edges", result.edges);
+        result.first_violation = fmt::format("the bare datapath had not finished after {} edges", result.edges);
     judge_triangles(mesh, setup, result);
     return result;
 }

@@ -134,9 +134,8 @@ void Lineage::meet(Number vertex, const Vertex& seen) {
          seen.displaced == v.displaced && seen.displaced_normal == v.displaced_normal && seen.screen == v.screen))
         return;
     known.unlike = true;
-    fault(result_.inconsistent_vertices, [&] {
-        return fmt::format("a vertex differs from one triangle to another: {}; {}", vertex_text(v), vertex_text(seen));
-    });
+    fault(result_.inconsistent_vertices,
+          [&] { return fmt::format("a vertex differs between triangles: {}; {}", vertex_text(v), vertex_text(seen)); });
 }
 
 void Lineage::split(const Side& side, const Vertex& inserted) {
@@ -206,11 +205,11 @@ void Lineage::judge(const std::vector<Edge>& edges) {
         if (edge.middle != none) {
             if (!(edge.found == Sides{}))
                 fault(result_.t_vertices, [&] {
-                    return "T-vertex: an edge is split by one of its triangles and whole in another: " + ends();
+                    return "T-vertex: an edge is split by one of its triangles and not by another: " + ends();
                 });
         } else if (!(edge.found == edge.wanted)) {
             fault(result_.cracks, [&] {
-                return fmt::format("an edge has {} and {} triangles on its sides, and should have {} and {}: {}",
+                return fmt::format("an edge has {} and {} triangles on its sides, expected {} and {}: {}",
                                    edge.found.along, edge.found.against, edge.wanted.along, edge.wanted.against,
                                    ends());
             });

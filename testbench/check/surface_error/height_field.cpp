@@ -70,7 +70,7 @@ std::optional<HeightField> find_height_field(const BaseMesh& base, const HeightM
     const glm::dvec3 p = corner(largest, 1).position - field.origin, q = corner(largest, 2).position - field.origin;
     const glm::dvec3 across = glm::cross(p, q);
     const double area = glm::length(across);
-    why = "its base triangle that is largest in texture space has no area that can be computed with";
+    why = "the base triangle that is largest in texture space has a zero or infinite area";
     if (!(area > 0) || !std::isfinite(area))
         return std::nullopt;
     field.normal = across / area;
@@ -98,7 +98,7 @@ std::optional<HeightField> find_height_field(const BaseMesh& base, const HeightM
     };
     if (!holds("the base mesh is not planar",
                [&](const BaseVertex& v) { return std::abs(field.height(v.position)) <= tolerance * size; }) ||
-        !holds("the base mesh's normals are not those of its plane",
+        !holds("the base mesh's normals are not perpendicular to its plane",
                [&](const BaseVertex& v) { return glm::length(v.normal - field.normal) <= tolerance; }) ||
         !holds("texture coordinates are not an affine function of position", [&](const BaseVertex& v) {
             const glm::dvec2 off = glm::abs(field.texel(v.position) - texel_of(v, base, map, displacement));

@@ -47,7 +47,7 @@ void check_base_numbers(const BaseMesh& base, const RecordedMesh& mesh) {
         if (mesh.triangles[k].base >= base.triangles.size())
             throw InputError(
                 fmt::format("mesh.ply: triangle {} descends from base triangle {}, but the job's base mesh "
-                            "has {}: the mesh is of "
+                            "has {}: the mesh belongs to "
                             "another job; run the job again",
                             k, mesh.triangles[k].base, base.triangles.size()));
 }

@@ -53,7 +53,7 @@ void add_triangles(Equations& list, const MachineSetup& setup, const HostedMachi
              machine.host.sent());
     list.add("taken by triangle_queue = by get_triangle from it", p.triangle_queue.taken(),
              p.get_triangle.queue_triangles());
-    list.add("triangles sent round for normals = decided for normals", made[1], counts.normal_passes);
+    list.add("triangles recirculated for normals = decided for normals", made[1], counts.normal_passes);
     list.add("finished = base triangles + edges split", counts.finished,
              p.get_triangle.host_triangles() + counts.edges_split);
     list.add("taken by the rasteriser = finished - culled", machine.rasteriser.triangles(),
@@ -169,7 +169,7 @@ void add_timed(Equations& list, const MachineSetup& setup, const HostedMachine& 
              tests([](const auto& t) { return items(t.height_test); }), summed_height);
     list.add("edges in view_test = edges", lanes([](const auto& lane) { return items(lane.view_test); }), edges);
     if (!families)
-        list.add("vertices taken by view_test = vertices, once a unit",
+        list.add("vertices taken by view_test = vertices, once per unit",
                  tests([](const auto& t) { return t.view_test.from_transform->taken(); }),
                  vertices * p.tessellation_tests.size());
     std::uint64_t joined = 0;
@@ -205,11 +205,12 @@ void add_timed(Equations& list, const MachineSetup& setup, const HostedMachine& 
     list.add("requests to normal_map = vertices and edges of normal_test", normal_map.requests(),
              normal_map_requests(p, vertices, normal));
     const std::uint64_t asked = height_test.requests * (summed_height - by_codes - off_lattice);
-    list.add("requests to " + std::string(height_test.table) + " = of each edge that it tests by its table",
+    list.add("requests to " + std::string(height_test.table) + " = those of each edge tested by table",
              height_table.requests(), setup.registers.tests.summed_height_test ? asked : 0);
 
-    list.add("triangles spilled = come back", p.triangle_queue.spilled(), p.triangle_queue.refilled());
-    list.add("requests to off_chip_memory = out and back", items(p.off_chip_memory), 2 * p.triangle_queue.spilled());
+    list.add("triangles spilled = refilled", p.triangle_queue.spilled(), p.triangle_queue.refilled());
+    list.add("requests to off_chip_memory = spills and refills", items(p.off_chip_memory),
+             2 * p.triangle_queue.spilled());
     list.add("bytes read from off_chip_memory = written", p.off_chip_memory.bytes_read(),
              p.off_chip_memory.bytes_written());
 }
@@ -235,9 +236,9 @@ void add_machine(Equations& list, const MachineSetup& setup, const HostedMachine
                         evaluated.summed_height_by_codes,
                         evaluated.off_lattice};
     add_triangles(list, setup, machine);
-    list.add(families      ? "edges tested = 3 a finished triangle, and those tested again"
-             : final_edges ? "edges tested = 3 a base triangle, 4 a split, and those tested again"
-                           : "edges tested = 3 a pass",
+    list.add(families      ? "edges tested = 3 per finished triangle, and those tested again"
+             : final_edges ? "edges tested = 3 per base triangle, 4 per split, and those tested again"
+                           : "edges tested = 3 per pass",
              counts.edges_tested, edges);
     add_reads(list, p, tested, datapath::map_entry_count(setup.registers.formats),
               kind_of(setup.registers.formats.height_test).codes);

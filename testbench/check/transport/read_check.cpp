@@ -38,7 +38,7 @@ void ReadCheck::compare(const MemoryRequest& asked, const MemoryRequest& answer)
         const std::size_t shown = std::min<std::size_t>(bytes, sizeof expected);
         std::memcpy(&expected, held.data(), shown);
         std::memcpy(&found, brought, shown);
-        result_.first_wrong = fmt::format("{}: a read at address {:#x} brought {:#x}; the memory holds {:#x}", port_,
+        result_.first_wrong = fmt::format("{}: a read at address {:#x} returned {:#x}; the memory holds {:#x}", port_,
                                           asked.address[k], found, expected);
     }
 }

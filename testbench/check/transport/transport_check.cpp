@@ -172,11 +172,11 @@ WorkResult TransportCheck::result() const {
             return;
         std::string text = whose + ": ";
         if (balance.count > 0)
-            text += fmt::format("{} triangles that were to be {} never were", balance.count, what);
+            text += fmt::format("{} triangles expected to be {} were not", balance.count, what);
         else if (balance.count < 0)
-            text += fmt::format("{} triangles more were {} than were to be", -balance.count, what);
+            text += fmt::format("{} more triangles were {} than expected", -balance.count, what);
         else
-            text += fmt::format("as many triangles were {} as were to be, but not the same", what);
+            text += fmt::format("as many triangles were {} as expected, but not the same ones", what);
         if (result.violations++ == 0)
             result.first_violation = text;
     };

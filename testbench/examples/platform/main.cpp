@@ -140,6 +140,6 @@ int sc_main(int argc, char** argv) {
     };
     sc_core::sc_start();
     if (device.busy())
-        std::fprintf(stderr, "platform: the simulation ended in the middle of a frame: is the ring full?\n");
+        std::fprintf(stderr, "platform: the simulation ended during a frame: is the ring full?\n");
     return drawn == frames ? 0 : 1;
 }

@@ -71,9 +71,9 @@ class SharedProgress {
     }
     if (least > request.goal.triangles)
         throw InputError(
-            fmt::format("--triangles {}: the base mesh has {} triangles before any is split: ask for at "
+            fmt::format("--triangles {}: the base mesh has {} triangles before any is split: use at "
                         "least that many, or "
-                        "take a coarser one (mesh.columns, mesh.rows, or --grid auto)",
+                        "a coarser base mesh (mesh.columns, mesh.rows, or --grid auto)",
                         request.goal.triangles, least));
     throw InputError(
         fmt::format("--triangles {}: with the job's other tests the mesh has {} triangles at any of the "
@@ -92,7 +92,7 @@ void refuse_beyond_finest(const TuneRequest& request, const std::vector<Explored
         fmt::format("--triangles {}: with every threshold at 0 there are {}, the most possible: the Tex Coord Test "
                     "(the map's resolution), tests.generation_limit = {} or a test that is not searched stops every "
                     "edge; "
-                    "ask for at most {}",
+                    "use at most {}",
                     request.goal.triangles, most, request.job.tests.generation_limit, most));
 }
 
@@ -105,12 +105,12 @@ void refuse_beyond_finest(const TuneRequest& request, const std::vector<Explored
             least = &*e.found.least_error;
     if (least == nullptr)
         throw InputError(
-            fmt::format("--error {:.6g}: no mesh has at most {} triangles, and larger ones are not searched: take a "
+            fmt::format("--error {:.6g}: no mesh has at most {} triangles, and larger ones are not searched: use a "
                         "coarser base mesh, or raise limits.triangles",
                         request.goal.error / unit, request.goal.most_triangles));
     throw InputError(
-        fmt::format("--error {:.6g}: the least {} error that was found is {:.6g} {}, with {} triangles: ask "
-                    "for at least that, "
+        fmt::format("--error {:.6g}: the least {} error found is {:.6g} {}, with {} triangles: allow "
+                    "at least that, "
                     "or try other base meshes (--grid auto)",
                     request.goal.error / unit, request.goal.largest ? "largest" : "RMS",
                     request.goal.error_of(*least) / unit, unit_name, least->triangles));

@@ -39,8 +39,8 @@ std::string rest_text(const TuneRequest& request, const TunedFigures& figures) {
     if (request.goal.triangles == 0 || used >= well_used)
         return {};
     return fmt::format(
-        "{:.1f} % of the budget is used: with these tests more triangles gave no less error, "
-        "or the next step of a threshold gives too many",
+        "{:.1f} % of the budget is used: with these tests more triangles did not reduce the error, "
+        "or the next threshold step gives too many",
         100 * used);
 }
 

@@ -122,7 +122,7 @@ std::vector<std::array<golden::Vertex, 3>> ExactModel::corners_of(const MachineS
             result.push_back(exact);
     }
     if (result.size() != setup.base_triangles.size())
-        throw std::logic_error("widths: a base triangle was not found again");
+        throw std::logic_error("widths: a base triangle was not found in the exact model");
     return result;
 }
 

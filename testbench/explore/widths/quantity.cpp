@@ -39,7 +39,8 @@ std::vector<Quantity> declare() {
              f.displacement_bits = bits;
              return std::string{};
          }},
-        {"summed_height", "entry of the Summed Height Table, modulo 2^bits: holds a rectangle's sum or is refused",
+        {"summed_height",
+         "entry of the Summed Height Table, modulo 2^bits; a width that cannot hold a rectangle's sum is refused",
          "formats.summed_height_bits", 8, 48, [](const Formats& f) { return f.summed_height_bits; },
          [](const Formats&) { return std::int64_t{0}; },
          [](Formats& f, std::int64_t bits) {

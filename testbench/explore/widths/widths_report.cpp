@@ -52,7 +52,7 @@ std::string limit_text(bool given, const std::string& limit, const char* relativ
 std::string knee_text(const WidthTable& table) {
     const WidthKnee& knee = table.knee;
     const std::string limits = fmt::format(
-        "at most {} of the edges with another split decision than exact arithmetic, an RMS position error of "
+        "at most {} of the edges with a split decision that differs from exact arithmetic, an RMS position error of "
         "at most {}, at most {:g} % local (check.allowed_flips), and no invariant violated",
         limit_text(knee.flips_given, fmt::format("{:.3f} %", knee.most_flips), "0.5 above the widest's"),
         limit_text(knee.error_given, fmt::format("{:.3e} model units", knee.most_error), "1.25 times the widest's"),
@@ -60,12 +60,12 @@ std::string knee_text(const WidthTable& table) {
     if (!knee.row) {
         const bool any =
             std::any_of(table.rows.begin(), table.rows.end(), [](const WidthRow& row) { return row.refused.empty(); });
-        return any ? fmt::format("  knee: none; not even the widest has {}\n", limits)
+        return any ? fmt::format("  knee: none; even the widest exceeds the limits: {}\n", limits)
                    : "  knee: none; every width was refused\n";
     }
     const WidthRow& row = table.rows[*knee.row];
     const bool last = *knee.row + 1 == table.rows.size();
-    return fmt::format("  knee: {} bits, {} of them fraction{}: with it and every wider one tried, {}\n", row.bits,
+    return fmt::format("  knee: {} bits, {} of them fraction{}: at this and every wider width tried, {}\n", row.bits,
                        row.fraction, last ? " (the narrowest tried)" : "", limits);
 }
 
@@ -140,14 +140,14 @@ std::string widths_text(const WidthRequest& request, const WidthSweep& sweep) {
         "tessera widths: one quantity at a time, all others as in the job (*: the job's own width)\n"
         "  triangles        of the machine; golden: of the golden model from the same rounded inputs; exact "
         "arithmetic: {}\n"
-        "  flipped, %       edges with another split decision than exact arithmetic; NT SHT VT TCT: edges on "
+        "  flipped, %       edges with a split decision that differs from exact arithmetic; NT SHT VT TCT: edges on "
         "which that test differs{}\n"
         "  error            of displaced positions against exact arithmetic, in model units; in LSB of the "
         "position\n"
         "  local            edges with a decision that differs from the golden model's from the same rounded "
         "ends\n"
         "  open             cracks and T-vertices, which must be 0\n"
-        "  saturated        values, see the JSON for which\n"
+        "  saturated        values; the JSON file lists which\n"
         "  storage          bits of a Triangle Queue entry, bytes of a table\n",
         sweep.exact_triangles == 0 ? "too many to count" : grouped_digits(sweep.exact_triangles),
         request.job.tests.highlight ? " (HT: in the CSV)" : "");

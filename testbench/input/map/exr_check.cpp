@@ -47,9 +47,9 @@ class ExrFile {
 
     void check(exr_result_t result) const {
         if (result != EXR_ERR_SUCCESS)
-            refuse(
-                fmt::format("OpenEXR cannot read the file: {}. It is damaged or was cut off: save or download it anew.",
-                            printable_ascii(message_.empty() ? exr_get_default_error_message(result) : message_)));
+            refuse(fmt::format(
+                "OpenEXR cannot read the file: {}. It is damaged or was cut off: save or download it again.",
+                printable_ascii(message_.empty() ? exr_get_default_error_message(result) : message_)));
     }
 
     std::string name_;
@@ -79,7 +79,7 @@ void ExrFile::check_header() {
     check(exr_get_data_window(file_, 0, &window));
     check(exr_get_channels(file_, 0, &channels));
     if (parts != 1)
-        refuse("the EXR file has several parts. Save the part with the heights as a file of its own.");
+        refuse("the EXR file has several parts. Save the part with the heights as a separate file.");
     if (storage != EXR_STORAGE_SCANLINE && storage != EXR_STORAGE_TILED)
         refuse(
             "the EXR file holds deep data, several samples per pixel. Flatten it and save one scan-line or "
@@ -111,7 +111,7 @@ void ExrFile::check_header() {
         if (bytes > limit)
             refuse(
                 fmt::format("{} of the EXR file has {} bytes when decoded, in {} channels; the limit is {}. Save the "
-                            "channel with the heights alone, as scan lines.",
+                            "channel with the heights only, as scan lines.",
                             what, bytes, channels->num_channels, limit));
 }
 
@@ -124,7 +124,7 @@ void ExrFile::check_chunks() const {
             if (chunk.compression == EXR_COMPRESSION_NONE && chunk.packed_size != chunk.unpacked_size)
                 refuse(
                     fmt::format("a chunk of the EXR file holds {} bytes of pixels of {}. It is damaged: save or "
-                                "download it anew.",
+                                "download it again.",
                                 chunk.packed_size, chunk.unpacked_size));
             if (chunk.compression == EXR_COMPRESSION_RLE || chunk.compression == EXR_COMPRESSION_ZIPS ||
                 chunk.compression == EXR_COMPRESSION_ZIP) {

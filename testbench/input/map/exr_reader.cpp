@@ -161,7 +161,7 @@ HeightMap read_exr(const std::filesystem::path& path, const std::string& channel
         throw;
     } catch (const std::exception& error) {
         refuse(path,
-               fmt::format("OpenEXR cannot read the file: {} It is damaged or was cut off: save or download it anew.",
+               fmt::format("OpenEXR cannot read the file: {} It is damaged or was cut off: save or download it again.",
                            printable_ascii(error.what())));
     }
 }

@@ -69,7 +69,7 @@ struct PgmFile {
         constexpr std::ptrdiff_t long_header = 4096;
         const bool binary = bytes[1] == '5';
         if (next != end && !is_space(*next) && *next != '#')
-            refuse("\"P2\" or \"P5\" is not followed by white space. This is no PGM file, or a damaged one.");
+            refuse("\"P2\" or \"P5\" is not followed by white space. The file is not a PGM file, or it is damaged.");
         HeightMap map;
         map.width = static_cast<int>(number("the width", 1, largest_map_side));
         map.height = static_cast<int>(number("the height", 1, largest_map_side));
@@ -95,7 +95,7 @@ struct PgmFile {
             }
         if (!binary && next == end)
             map.repairs.emplace_back(
-                "The P2 file ends right after its last digit; it was taken as complete, but may have been "
+                "The P2 file ends right after its last digit; it was read as complete, but may have been "
                 "cut off.");
         if (!binary)
             skip_space_and_comments();

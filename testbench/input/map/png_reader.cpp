@@ -107,7 +107,7 @@ HeightMap read_png(const std::filesystem::path& path) {
         throw std::bad_alloc();
     if (!decode(decoder.png, decoder.info, file.get()))
         throw InputError(
-            fmt::format("{}: libpng cannot read the PNG file: {}. It is damaged: save or download it anew.", name,
+            fmt::format("{}: libpng cannot read the PNG file: {}. It is damaged: save or download it again.", name,
                         printable_ascii(messages.error)));
     HeightMap map;
     map.width = static_cast<int>(png_get_image_width(decoder.png, decoder.info));
@@ -115,7 +115,7 @@ HeightMap read_png(const std::filesystem::path& path) {
     map.values.resize(static_cast<std::size_t>(map.width) * static_cast<std::size_t>(map.height));
     convert(decoder, map);
     for (const std::string& warning : messages.warnings)
-        map.repairs.push_back(fmt::format("libpng warns: {}.", printable_ascii(warning)));
+        map.repairs.push_back(fmt::format("libpng warning: {}.", printable_ascii(warning)));
     const std::uint64_t read = static_cast<std::uint64_t>(std::ftell(file.get()));
     if (read < size)
         map.repairs.push_back(fmt::format("{} bytes after the PNG file's end were ignored.", size - read));

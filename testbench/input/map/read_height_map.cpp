@@ -73,7 +73,7 @@ HeightMap read_height_map(const std::filesystem::path& path, const std::string& 
     map_file_size(path);  // refuses anything but a regular file before opening it
     const Format format = format_of_content(path, map_file_start(path, 64));
     if (format != Format::exr && !channel.empty()) {
-        refuse(path, fmt::format("channel \"{}\" is asked for, but this is a {} file; only EXR files have named "
+        refuse(path, fmt::format("map.channel = \"{}\", but this is a {} file; only EXR files have named "
                                  "channels. Leave map.channel empty.",
                                  printable_ascii(channel), format_name(format)));
     }
@@ -81,8 +81,9 @@ HeightMap read_height_map(const std::filesystem::path& path, const std::string& 
     try {
         map = read_format(format, path, channel);
     } catch (const std::bad_alloc&) {
-        throw ResourceError(
-            fmt::format("{}: there is not enough memory to read the map. Give the process more.", path.string()));
+        throw ResourceError(fmt::format(
+            "{}: there is not enough memory to read the map. Make the map smaller, or give the process more memory.",
+            path.string()));
     }
     const std::string extension = lower_case_extension(path);
     for (const auto& [claimed, claimed_extension] :

@@ -126,7 +126,7 @@ StrokeText::Glyph StrokeText::glyph_of(char character) {
                                              [&](const Drawing& each) { return each.character == wanted; });
     if (drawing == std::end(drawings))
         throw InputError(
-            fmt::format("map.text: the built-in font has no character \"{}\" (code {}); it has \"{}\", and shows "
+            fmt::format("map.text: the built-in font has no character \"{}\" (code {}); it has \"{}\", and draws "
                         "lower-case letters as capitals.",
                         printable_ascii(std::string_view(&character, 1)), static_cast<unsigned char>(character),
                         stroke_font_characters()));

@@ -33,7 +33,7 @@ void check_triangles(std::int64_t columns, std::int64_t rows) {
     if (triangles > largest_base_triangles) {
         throw ResourceError(
             fmt::format("mesh.columns = {} and mesh.rows = {} give {} base triangles, the limit is {}: "
-                        "take fewer, the tessellator refines them",
+                        "use fewer, the tessellator refines them",
                         columns, rows, triangles, largest_base_triangles));
     }
 }

@@ -49,7 +49,7 @@ BaseMesh make_base_mesh(const Job::Mesh& job, const std::string& file) {
         case MeshSource::patches: return make_patch_mesh(read_bezier_patches(file), columns, rows, file);
         case MeshSource::run: return read_run_mesh(file);
     }
-    throw InputError("mesh.source is none of plane, cylinder, sphere, file, patches, run");
+    throw InputError("mesh.source is not one of plane, cylinder, sphere, file, patches, run");
 }
 
 }  // namespace tessera

@@ -41,8 +41,8 @@ std::string_view foreign_mesh_kind(std::string_view content) {
         {"Kaydara FBX"sv, "an FBX file"sv},
         {"BLENDER"sv, "a Blender file"sv},
         {"OFF"sv, "an OFF file"sv},
-        {"PK\x03\x04"sv, "a ZIP archive (3MF and USDZ are such)"sv},
-        {"<?xml"sv, "an XML file (COLLADA and X3D are such)"sv},
+        {"PK\x03\x04"sv, "a ZIP archive (such as 3MF or USDZ)"sv},
+        {"<?xml"sv, "an XML file (such as COLLADA or X3D)"sv},
     }};
     for (const auto& [start, kind] : kinds)
         if (content.substr(0, start.size()) == start)

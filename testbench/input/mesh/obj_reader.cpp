@@ -90,8 +90,8 @@ class Assembler {
             const std::optional<PolygonCut> cut = cut_polygon(points, work_left);
             if (!cut) {
                 throw ResourceError(
-                    fmt::format("{}:{}: up to this face of {} corners, cutting polygons that are not convex "
-                                "took {} steps, the limit: triangulate the mesh in the program that made it",
+                    fmt::format("{}:{}: up to this face of {} corners, triangulating non-convex polygons "
+                                "took {} steps, the limit: triangulate the mesh in the program that exported it",
                                 name_, face.line, face.count, largest_cutting_work));
             }
             if (cut->crosses_itself)
@@ -110,11 +110,11 @@ class Assembler {
         }
         mesh_.dropped_degenerate = degenerate.count;
         repair(degenerate, "{} triangle(s) of zero area or with one vertex twice were dropped, the first in line {}.");
-        repair(repeated, "{} face(s) name one point twice in a row, the first in line {}: taken once.");
+        repair(repeated, "{} face(s) name one point twice in a row, the first in line {}: used once.");
         repair(crossing,
                "The outline of {} face(s) crosses itself, the first in line {}: cut into triangles that "
                "overlap.");
-        repair(nonplanar, "{} face(s) are not plane, the first in line {}: cut into triangles, with an edge across.");
+        repair(nonplanar, "{} face(s) are not planar, the first in line {}: cut into triangles, with an edge across.");
     }
 
     /// Drops and counts triangles at the same three positions as an earlier one.
@@ -137,7 +137,8 @@ class Assembler {
             [this](const Triangle& a, const Triangle& b) { return !own_normals(a, b); }, turned);
         mesh_.dropped_duplicate = same.count + turned.count;
         repair(same, "{} triangle(s) repeat an earlier one and were dropped, the first in line {}.");
-        repair(turned, "{} triangle(s) are an earlier one turned over and were dropped, the first in line {}.");
+        repair(turned,
+               "{} triangle(s) repeat an earlier one with opposite winding and were dropped, the first in line {}.");
     }
 
     template <typename Key, typename Drop>
@@ -215,8 +216,8 @@ class Assembler {
             mesh_.triangles[i / 3][i % 3] = vertex_of[first[i]];
         }
         repair(zero_normals,
-               "{} vertex normal(s) have no length, first used in line {}: smooth normals took their place.");
-        repair(odd_normals, "{} vertex normal(s) are not of unit length, first used in line {}: made so.");
+               "{} vertex normal(s) have zero length, first used in line {}: replaced by smooth normals.");
+        repair(odd_normals, "{} vertex normal(s) are not of unit length, first used in line {}: normalised.");
         std::string why =
             fmt::format("{} vertices have no texture coordinates, first used in line {}", bare.count, bare.first_line);
         const auto has_area = [this](const Triangle& t) { return texture_gradient(mesh_, t).has_value(); };
@@ -246,7 +247,7 @@ class Assembler {
                               (vertex.position[up] - low[up]) / size[up]};
         }
         mesh_.repairs.push_back(
-            fmt::format("{}: the map was laid over the mesh's bounding box along {}.", why, "xyz"[thinnest]));
+            fmt::format("{}: the map was projected onto the mesh's bounding box along {}.", why, "xyz"[thinnest]));
     }
 
     void repair(const Tally& tally, const char* sentence) {

@@ -47,7 +47,7 @@ class Reader {
         check_indices();
         if (unknown_ > 0) {
             out_.repairs.push_back(
-                fmt::format("{} line(s) begin with a word that is not read and were skipped, the first is "
+                fmt::format("{} line(s) begin with an unknown keyword and were skipped, the first is "
                             "line {}: {}.",
                             unknown_, unknown_line_, unknown_keyword_));
         }
@@ -80,13 +80,13 @@ class Reader {
             text_.remove_prefix(3);
         if (const std::string_view kind = foreign_mesh_kind(text_); !kind.empty()) {
             throw InputError(
-                fmt::format("{}: this is {}, and mesh.file takes OBJ: open it in Blender, MeshLab or the "
+                fmt::format("{}: this is {}, but mesh.file must be OBJ: open it in Blender, MeshLab or the "
                             "like, export it as OBJ with texture coordinates, and name that file",
                             name_, kind));
         }
         if (text_.find('\0') != std::string_view::npos) {
             throw InputError(
-                fmt::format("{}: a zero byte: the file is UTF-16, no text, or damaged: save it as UTF-8 or "
+                fmt::format("{}: a zero byte: the file is UTF-16, not text, or damaged: save it as UTF-8 or "
                             "export it again",
                             name_));
         }
@@ -134,7 +134,7 @@ class Reader {
         for (std::string_view word = next_word(rest); !word.empty(); word = next_word(rest)) {
             const double value = to_number(word).value_or(HUGE_VAL);
             if (!(std::abs(value) <= largest_coordinate)) {
-                fail(fmt::format("{} in `{}` is no number up to {:g}, written with a point and between blanks",
+                fail(fmt::format("{} in `{}` is not a number up to {:g}, with a decimal point and surrounded by blanks",
                                  quoted(word), list.keyword, largest_coordinate));
             }
             if (count < 3)
@@ -142,7 +142,7 @@ class Reader {
             ++count;
         }
         if (count < list.fewest || count > list.most)
-            fail(fmt::format("`{}` with {} number(s): it takes {} to {}", list.keyword, count, list.fewest, list.most));
+            fail(fmt::format("`{}` with {} number(s): expected {} to {}", list.keyword, count, list.fewest, list.most));
         limit(++list.count, largest_obj_records, "lines of vertices");
         return first;
     }
@@ -154,14 +154,14 @@ class Reader {
             const std::optional<ObjText::Corner> corner = this->corner(word);
             if (!corner) {
                 fail(
-                    fmt::format("face corner {}: it must be v, v/vt, v//vn or v/vt/vn, whole numbers from 1, or "
+                    fmt::format("face corner {}: expected v, v/vt, v//vn or v/vt/vn, whole numbers from 1, or "
                                 "from -1 backwards to the first defined",
                                 quoted(word)));
             }
             out_.corners.push_back(*corner);
         }
         if (face.count < 3)
-            fail(fmt::format("a face with {} corner(s): it needs three or more", face.count));
+            fail(fmt::format("a face with {} corner(s): expected three or more", face.count));
         triangles_ += face.count - 2;
         limit(triangles_, largest_base_triangles, "base triangles");
         out_.faces.push_back(face);
@@ -192,8 +192,8 @@ class Reader {
             throw InputError(
                 fmt::format("{}: no face (`f` line) in {} line(s){}: is it a Wavefront OBJ file with polygons?", name_,
                             next_line_ - 1,
-                            unknown_ > 0 ? fmt::format(", but {} of other words ({} in line {} first)", unknown_,
-                                                       unknown_keyword_, unknown_line_)
+                            unknown_ > 0 ? fmt::format(", but {} with other keywords (the first is {} in line {})",
+                                                       unknown_, unknown_keyword_, unknown_line_)
                                          : ""));
         }
         for (const ObjText::Face& face : out_.faces) {
@@ -202,8 +202,8 @@ class Reader {
                 const std::array<std::uint32_t, 3> indices{corner.position, corner.texture, corner.normal};
                 for (std::size_t k = 0; k < lists_.size(); ++k) {
                     if (indices[k] != ObjText::none && indices[k] >= lists_[k].count) {
-                        fail(face.line, fmt::format("a face names `{}` number {}, the file has {}", lists_[k].keyword,
-                                                    indices[k] + 1, lists_[k].count));
+                        fail(face.line, fmt::format("a face names `{}` number {}, but the file has {}",
+                                                    lists_[k].keyword, indices[k] + 1, lists_[k].count));
                     }
                 }
             }

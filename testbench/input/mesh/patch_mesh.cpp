@@ -114,7 +114,7 @@ void check(const BezierPatches& patches, std::int64_t columns, std::int64_t rows
     if (triangles > largest_base_triangles) {
         throw ResourceError(
             fmt::format("{}: mesh.columns = {} and mesh.rows = {} give {} base triangles on {} patches, the limit is "
-                        "{}: take fewer, the tessellator refines them",
+                        "{}: use fewer, the tessellator refines them",
                         name, columns, rows, triangles, patches.patches.size(), largest_base_triangles));
     }
 }
@@ -203,8 +203,8 @@ BaseMesh make_patch_mesh(const BezierPatches& patches, std::int64_t columns, std
                                               [](const BaseVertex& v) { return v.normal == glm::dvec3(0); });
     if (without_normal > 0) {
         mesh.repairs.push_back(
-            fmt::format("{} vertices lie on cusps of their patches, which have no normal there: smooth ones "
-                        "took its place.",
+            fmt::format("{} vertices at cusps of their patches have no normal: replaced by smooth "
+                        "normals.",
                         without_normal));
     }
     complete_smooth_normals(mesh);

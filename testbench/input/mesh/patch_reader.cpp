@@ -41,7 +41,7 @@ class PatchReader {
             result_.points.push_back(point);
         }
         if (next_line()) {
-            fail(fmt::format("{} behind the last of {} points: correct the number of points, or delete the rest",
+            fail(fmt::format("{} after the last of {} points: correct the number of points, or delete the rest",
                              quoted(words_), points));
         }
         check_indices();
@@ -87,9 +87,9 @@ class PatchReader {
     std::size_t whole_number(std::string_view word, const char* what, std::size_t most) {
         const std::optional<double> number = to_number(word);
         if (!number || !(*number >= 1) || std::floor(*number) != *number)
-            fail(fmt::format("{} is no number of {}: expected a whole number from 1", quoted(word), what));
+            fail(fmt::format("{} is not a number of {}: expected a whole number from 1", quoted(word), what));
         if (*number > static_cast<double>(most)) {
-            throw ResourceError(fmt::format("{}:{}: {} {}, the limit is {}: take a part of the model", name_, line_,
+            throw ResourceError(fmt::format("{}:{}: {} {}, the limit is {}: use a part of the model", name_, line_,
                                             quoted(word), what, most));
         }
         return static_cast<std::size_t>(*number);
@@ -104,14 +104,14 @@ class PatchReader {
         const std::optional<double> number = to_number(word);
         if (!number || !(*number >= 1 && *number <= static_cast<double>(largest_obj_records)) ||
             std::floor(*number) != *number)
-            fail(fmt::format("{} is no point's number: points are counted from 1", quoted(word)));
+            fail(fmt::format("{} is not a point number: points are counted from 1", quoted(word)));
         return static_cast<std::uint32_t>(*number) - 1;
     }
 
     double coordinate(std::string_view word) {
         const std::optional<double> number = to_number(word);
         if (!number || !(std::abs(*number) <= largest_coordinate)) {
-            fail(fmt::format("{} is no coordinate: expected a number of at most {:g}", quoted(word),
+            fail(fmt::format("{} is not a coordinate: expected a number of at most {:g}", quoted(word),
                              largest_coordinate));
         }
         return *number;
@@ -123,7 +123,7 @@ class PatchReader {
             for (const std::uint32_t i : result_.patches[k]) {
                 if (i >= result_.points.size()) {
                     line_ = lines_[k];
-                    fail(fmt::format("patch {} names point {}, but there are {}: correct the number", k + 1, i + 1,
+                    fail(fmt::format("patch {} names point {}, but the file has {}: correct the number", k + 1, i + 1,
                                      result_.points.size()));
                 }
             }

@@ -58,7 +58,7 @@ void take_triangles(const RecordedMesh& recorded, BaseMesh& mesh) {
     }
     if (mesh.dropped_degenerate > 0)
         mesh.repairs.push_back(
-            fmt::format("{} triangle(s) of the run, two corners of which displacement had brought together, "
+            fmt::format("{} triangle(s) of the run with two corners at one displaced position "
                         "were dropped.",
                         mesh.dropped_degenerate));
 }
@@ -68,8 +68,7 @@ void complete_normals(BaseMesh& mesh) {
                                        [](const BaseVertex& v) { return v.normal == glm::dvec3(0); });
     if (without == 0)
         return;
-    mesh.repairs.push_back(
-        fmt::format("{} vertices of the run have no normal: smooth ones took their place.", without));
+    mesh.repairs.push_back(fmt::format("{} vertices of the run have no normal: replaced by smooth normals.", without));
     complete_smooth_normals(mesh);
 }
 

@@ -112,12 +112,12 @@ void find_t_junctions(const BaseMesh& mesh, const std::vector<std::array<std::ui
     }
     if (found > 0) {
         flaws.push_back(
-            fmt::format("{} border edge(s) have another vertex of the border on them (T-junction): the "
+            fmt::format("{} border edge(s) contain another vertex of the border (T-junction): the "
                         "displaced surface may open there.",
                         found));
     }
     if (searched < border.size()) {
-        flaws.push_back(fmt::format("The search for T-junctions was given up after {} of {} border edges.", searched,
+        flaws.push_back(fmt::format("The search for T-junctions was stopped after {} of {} border edges.", searched,
                                     border.size()));
     }
 }
@@ -154,7 +154,7 @@ void edge_flaws(const BaseMesh& mesh, const std::vector<std::uint32_t>& same_pos
     if (crowded > 0)
         flaws.push_back(fmt::format("{} edge(s) belong to more than two triangles.", crowded));
     if (opposed > 0)
-        flaws.push_back(fmt::format("Across {} edge(s) the winding changes: neighbours face opposite ways.", opposed));
+        flaws.push_back(fmt::format("The winding changes across {} edge(s): neighbours face opposite ways.", opposed));
     find_t_junctions(mesh, border, most_steps, flaws);
 }
 

@@ -35,10 +35,10 @@ void lay_floor(const QuadricSurface& surface, BakedMap& map) {
             lowest = value;
     }
     if (map.absent == map.values.size())
-        throw InputError(
-            fmt::format("{}: the quadric is nowhere: none of {} x {} lines meets it within {:g} model units; move it, "
-                        "make it larger, or sample it elsewhere ([domain], --mesh)",
-                        surface.where, map.width, map.height, largest_displacement));
+        throw InputError(fmt::format(
+            "{}: the quadric was not found: none of {} x {} lines meets it within {:g} model units; move it, "
+            "make it larger, or change the sampled region ([domain], --mesh)",
+            surface.where, map.width, map.height, largest_displacement));
     map.floor = surface.floor.value_or(lowest);
     for (double& value : map.values) {
         map.raised += value < map.floor;

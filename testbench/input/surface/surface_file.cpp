@@ -35,7 +35,7 @@ Quadric general_quadric(TomlFields& fields) {
     for (std::size_t k = 0; k < 9; ++k)
         any = any || c[k] != 0;
     if (!any)
-        fields.fail("coefficients", "`coefficients` are all 0 but the last: no surface has this equation");
+        fields.fail("coefficients", "`coefficients` are all 0 except the last: no surface has this equation");
     return quadric;
 }
 
@@ -43,7 +43,7 @@ Quadric general_quadric(TomlFields& fields) {
 glm::dvec3 semi_axes(TomlFields& fields, bool round, int may_be_negative) {
     const bool axes = !round && fields.has("semi_axes");
     if (axes && fields.has("radius"))
-        fields.fail("radius", "`radius` and `semi_axes` are both given: leave one out");
+        fields.fail("radius", "`radius` and `semi_axes` are both given: remove one");
     if (!axes)
         return glm::dvec3(fields.number("radius", length));
     const glm::dvec3 given = vector(fields.numbers("semi_axes", 3, {-length.high, length.high}));
@@ -112,10 +112,10 @@ void check_knots(TomlFields& fields, const char* key, const std::vector<double>&
         const bool end = knots[k] <= knots[degree] || knots[k] >= knots[count];
         const std::size_t most = end ? degree + 1 : degree;
         if (alike > most)
-            fields.fail(key, k,
-                        fmt::format("`{}` has the knot {} more than {} times, {}", key, toml_number(knots[k]), most,
-                                    end ? "degree + 1, the most at an end"
-                                        : "the degree, and inside more would tear the surface"));
+            fields.fail(
+                key, k,
+                fmt::format("`{}` has the knot {} more than {} times, {}", key, toml_number(knots[k]), most,
+                            end ? "degree + 1, the most at an end" : "the degree; more inside would tear the surface"));
     }
     if (!(knots[degree] < knots[count]))
         fields.fail(key, fmt::format("`{}` leaves no range: its knots {} and {}, {} and {}, must differ", key,
@@ -204,7 +204,7 @@ Surface parse_surface(std::string_view text, const std::string& name) {
         if (label == "domain")
             read_domain(fields, surface);
         else if (!shape.empty())
-            top.fail(table, fmt::format("[{}] and [{}] are both there: a file describes one surface", shape, label));
+            top.fail(table, fmt::format("both [{}] and [{}] are given: a file describes one surface", shape, label));
         else if (label == "quadric")
             surface.shape = read_quadric(fields);
         else if (label == "nurbs")

@@ -98,7 +98,7 @@ void TomlFields::finish() const {
         const std::string near = nearest_name(name, {asked_.begin(), asked_.end()});
         fail_at(key.source(), fmt::format("unknown {} `{}`{}; {}", node.is_table() ? "table" : "key", printable(name),
                                           name_.empty() ? "" : fmt::format(" of [{}]", name_),
-                                          near.empty() ? fmt::format("it takes {}", fmt::join(asked_, ", "))
+                                          near.empty() ? fmt::format("the keys are {}", fmt::join(asked_, ", "))
                                                        : fmt::format("did you mean `{}`?", near)));
     }
 }

@@ -19,7 +19,7 @@ void check(RTCDevice device, std::size_t triangles) {
     if (error == RTC_ERROR_OUT_OF_MEMORY)
         throw ResourceError(
             fmt::format("picture: out of memory for the ray hierarchy of {} triangles; set "
-                        "output.picture = false or make fewer",
+                        "output.picture = false or reduce their number",
                         triangles));
     if (error != RTC_ERROR_NONE)
         throw std::runtime_error(fmt::format("picture: Embree reports error {}", static_cast<int>(error)));

@@ -28,7 +28,7 @@ const char* kind_name(InvariantFigure::Kind kind) {
 
 std::string decisions_text(const ConformanceResult& result, double allowed_flips) {
     std::string text = fmt::format(
-        "Decisions: {}. Every edge was decided again by the golden model, in double precision, from the same "
+        "Decisions: {}. The golden model decided every edge again, in double precision, from the same "
         "ends.\n"
         "A flip is allowed where golden's value lies within the format's error bound of its threshold, on at "
         "most {} %\n"
@@ -49,7 +49,7 @@ std::string decisions_text(const ConformanceResult& result, double allowed_flips
 std::string values_text(const ConformanceResult& result) {
     std::string text = fmt::format(
         "Values: hardware minus golden, in LSB of the value's format; each within a bound derived from the "
-        "formats\nand the operands at hand. `of bound`: the worst of any value over its own bound.\n\n"
+        "formats\nand operands. `of bound`: the largest ratio of a value to its own bound.\n\n"
         "  {:<28}{:>12}{:>10}{:>12}{:>12}{:>15}{:>10}\n",
         "quantity", "compared", "outside", "maximum", "RMS", "largest bound", "of bound");
     for (const ConformanceResult::Quantity& q : result.quantities)
@@ -72,7 +72,7 @@ std::string distance_text(const char* name, const EndToEndResult::Distance& d) {
 
 std::string end_to_end_text(const EndToEndResult& result) {
     std::string text = fmt::format(
-        "End to end: {}. The golden model run by itself from the job: its own camera, heights, normal map "
+        "End to end: {}. The golden model's own run of the job: its own camera, heights, normal map "
         "and "
         "thresholds.\nOnly map values (to displacement codes) and texture coordinates are rounded, as in the "
         "hardware. Allowed: {} % more or\nfewer triangles; {} % of the points farther from the other "
@@ -81,7 +81,7 @@ std::string end_to_end_text(const EndToEndResult& result) {
         "  triangles: hardware {}, golden {}\n",
         verdict(result.passed()), result.allowed.triangles, result.allowed_farther(), result.allowed.rounding,
         result.allowed_rms_model(), result.hardware_triangles,
-        result.bound_hit ? fmt::format("more than {}, where its run was stopped", result.bound)
+        result.bound_hit ? fmt::format("more than {}; its run was stopped there", result.bound)
                          : fmt::format("{} ({:+.4f} %)", result.golden_triangles, result.more_triangles()));
     if (!result.bound_hit)
         text += distance_text("hardware to golden", result.hardware_to_golden) +
@@ -91,7 +91,7 @@ std::string end_to_end_text(const EndToEndResult& result) {
 
 std::string setup_text(const SetupResult& result) {
     std::string text = fmt::format(
-        "Set-up: {}. What the host set against what the golden model derives from the job itself; each "
+        "Set-up: {}. The host's settings compared with those that the golden model derives from the job; each "
         "value within\nthe bound of its format's rounding.\n\n  {:<22}{:>12}{:>10}{:>10}  {}\n",
         verdict(result.passed()), "set by the host", "compared", "wrong", "of bound", "");
     for (const SetupResult::Part& part : result.parts)
@@ -104,9 +104,8 @@ std::string setup_text(const SetupResult& result) {
 
 std::string invariants_text(const InvariantResult& result) {
     std::string text = fmt::format(
-        "Invariants: {}. The emitted mesh is the one that the datapath makes by itself, bit for bit, and "
-        "that "
-        "is closed, by\ndescent. Violations must be 0; `rounding` and `input` explain themselves below.\n\n",
+        "Invariants: {}. The emitted mesh equals the bare datapath's, bit for bit, and is closed by\n"
+        "descent. Violations must be 0; the kinds `rounding` and `input` are explained below.\n\n",
         verdict(result.passed()));
     for (const InvariantFigure& figure : invariant_figures(result))
         text += fmt::format("  {:<28}{:>12}  {:<10} {}\n", figure.name, figure.value, kind_name(figure.kind),
@@ -118,8 +117,8 @@ std::string invariants_text(const InvariantResult& result) {
 
 std::string work_text(const WorkResult& result) {
     std::string text = fmt::format(
-        "Work conservation: {}. Each triangle arrived where expected, once and unaltered; what goes "
-        "into\none unit came out of another.\n\n  triangles decided {}, equations {}, violations {}\n",
+        "Work conservation: {}. Each triangle arrived where expected, once and unaltered; each unit "
+        "received\nwhat another sent.\n\n  triangles decided {}, equations {}, violations {}\n",
         verdict(result.passed()), result.triangles, result.equations, result.violations);
     if (!result.passed())
         text += "\nFirst violation:\n" + result.first_violation + "\n";
@@ -128,7 +127,7 @@ std::string work_text(const WorkResult& result) {
 
 std::string reads_text(const ReadResult& result) {
     std::string text = fmt::format(
-        "Reads: {}. Every table entry read was compared with what the memory holds.\n\n"
+        "Reads: {}. Every table entry read was compared with the memory's contents.\n\n"
         "  entries {}, wrong {}\n",
         verdict(result.passed()), result.entries, result.wrong);
     if (!result.passed())

@@ -17,7 +17,7 @@ std::string why_whole(unsigned stopped_by) {
     add(4, "View Test");
     add(8, "Tex Coord Test");
     add(16, "Generation Test");
-    return text.empty() ? "no edge with Normal Test or Summed Height Test" : text;
+    return text.empty() ? "none: neither Normal Test nor Summed Height Test requested a split" : text;
 }
 
 void add_direction(FigureGroup& figures, const std::string& name, const char* words, const DirectedError& error,
@@ -41,24 +41,23 @@ void add_surface(std::vector<Figure>& all, const char* group, const SurfaceError
 }
 
 void add_place(FigureGroup& figures, const glm::dvec3& position) {
-    figures.add("x", position.x, "model unit", "where, on the surface measured from");
+    figures.add("x", position.x, "model unit", "position on the surface measured from");
     figures.add("y", position.y, "model unit", "likewise");
     figures.add("z", position.z, "model unit", "likewise");
 }
 
 void add_triangle(FigureGroup& figures, std::uint64_t number, const RecordedMesh::Triangle& triangle) {
-    figures.add("triangle", number, "-", "the emitted triangle there, by its place in mesh.ply");
+    figures.add("triangle", number, "-", "the emitted triangle there, its index in mesh.ply");
     figures.add("base", triangle.base, "-", "its base triangle");
     figures.add("generation", triangle.generation, "-", "its generation");
     figures.add("split_by", triangle.split_by, "-",
                 triangle.split_by < 32
                     ? "tests that split its parent: 1 Normal, 2 Summed Height, 3 both, 0 base"
                     : "tests that split its parent: 32 Highlight, plus 1 Normal, 2 Summed Height, 3 both");
-    figures.add("stopped_by", triangle.stopped_by, "-",
-                "what kept an edge of it whole: sum of 4 View Test, 8 Tex Coord Test, 16 Generation Test");
-    figures.add("why_whole", why_whole(triangle.stopped_by), "-",
-                "the same in words; without such an edge neither Normal Test nor Summed Height Test asked "
-                "for a split");
+    figures.add(
+        "stopped_by", triangle.stopped_by, "-",
+        "tests that stopped one of its edges from being split: sum of 4 View Test, 8 Tex Coord Test, 16 Generation Test");
+    figures.add("why_whole", why_whole(triangle.stopped_by), "-", "the same in words");
 }
 
 void add_worst(std::vector<Figure>& all, const char* group, const RecordedMesh& mesh, const DirectedError& error) {
@@ -75,25 +74,25 @@ void add_worst(std::vector<Figure>& all, const char* group, const RecordedMesh& 
 void add_vertical(std::vector<Figure>& all, const RecordedMesh& mesh, const MeshError& error) {
     FigureGroup figures(all, "vertical");
     if (!error.vertical) {
-        figures.add("none", error.no_vertical, "-", "why this is no height field");
+        figures.add("none", error.no_vertical, "-", "why this is not a height field");
         return;
     }
     const VerticalError& vertical = *error.vertical;
     figures.add("grid_points", vertical.grid_points, "texel", "texel centres on the base mesh");
-    figures.add("covered", vertical.covered, "texel", "those of them that the emitted mesh lies over; only they count");
+    figures.add("covered", vertical.covered, "texel", "of these, those that the emitted mesh covers; only they count");
     figures.add("max", vertical.max, "model unit", "largest difference of heights at a grid point");
-    figures.add("rms", vertical.rms, "model unit", "its root mean square, every grid point weighing the same");
+    figures.add("rms", vertical.rms, "model unit", "its root mean square, every grid point weighted equally");
     if (vertical.map_unit > 0) {
         figures.add("max_map", vertical.max / vertical.map_unit, "map unit",
                     "the largest, in the units of the map's file (PGM, PNG: its integers)");
         figures.add("rms_map", vertical.rms / vertical.map_unit, "map unit", "the root mean square likewise");
     }
     if (vertical.seen > 0) {
-        figures.add("seen", vertical.seen, "texel", "those covered that the camera has in its picture, hidden or not");
+        figures.add("seen", vertical.seen, "texel", "covered grid points in the camera's picture, hidden or not");
         figures.add("max_pixels", vertical.max_pixels, "pixel",
                     "largest distance in the picture between a grid point and the mesh above or below it");
         figures.add("rms_pixels", vertical.rms_pixels, "pixel",
-                    "its root mean square, every grid point weighing the same");
+                    "its root mean square, every grid point weighted equally");
     }
     if (vertical.covered == 0)
         return;
@@ -126,7 +125,7 @@ std::string figures_row(const char* name, double max, double rms, double unit) {
 
 std::string density_text(double density, const char* per) {
     return fmt::format("{:.3g} per {}{}", density, per,
-                       density < 1 ? " (fewer than one: what lies between is not measured)" : "");
+                       density < 1 ? " (fewer than one: detail between them is not measured)" : "");
 }
 
 std::string triangle_text(std::uint64_t number, const RecordedMesh::Triangle& triangle) {
@@ -183,7 +182,7 @@ std::string error_text(const Job& job, const RecordedMesh& mesh, const MeshError
                             error.interpolated.mesh_to_reference.samples, density_text(error.mesh_density, "texel")));
     text += "\n" + figures_heading("texels");
     text += surface_rows("map interpolated (the headline)", error.interpolated, error.texel);
-    text += surface_rows("map's nearest texel, as without a filter", error.nearest_texel, error.texel);
+    text += surface_rows("map's nearest texel, unfiltered", error.nearest_texel, error.texel);
     text += "\n";
     text += worst_rows("worst, reference to mesh", mesh, error.interpolated.reference_to_mesh);
     text += worst_rows("worst, mesh to reference", mesh, error.interpolated.mesh_to_reference);
@@ -206,7 +205,7 @@ std::string error_text(const Job& job, const RecordedMesh& mesh, const MeshError
     }
     if (job.hardware.culling == Culling::back)
         text +=
-            "\n  hardware.culling = \"back\": what was culled is not in mesh.ply; reference to mesh measures "
+            "\n  hardware.culling = \"back\": culled triangles are not in mesh.ply; reference to mesh measures "
             "the hole\n";
     return text;
 }

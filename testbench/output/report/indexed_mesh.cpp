@@ -31,7 +31,7 @@ bool same(const Corner& a, const Corner& b) {
 IndexedMesh IndexedMesh::from(const EmittedMesh& mesh) {
     if (mesh.triangles.size() > most_triangles)
         throw ResourceError("the mesh has more than " + std::to_string(most_triangles) +
-                            " triangles, more than a mesh file can number; switch output.ply and output.obj off");
+                            " triangles, the most a mesh file can index; set output.ply and output.obj to false");
     IndexedMesh result;
     std::size_t count = 0;
     for (const EmittedTriangle& triangle : mesh.triangles)

@@ -50,36 +50,36 @@ void write_ply(const std::filesystem::path& path, const EmittedMesh& mesh, const
     const IndexedMesh indexed = IndexedMesh::from(mesh);
     const bool highlight = mesh.has_highlight_splits();
     AtomicFile file(path);
-    file.write(fmt::format(
-        "ply\n"
-        "format binary_little_endian 1.0\n"
-        "comment tessera: adaptively tessellated, displaced mesh; culled triangles left out\n"
-        "comment x y z: displaced position, model units; nx ny nz: normal of the displaced surface\n"
-        "comment s t: texture coordinates, 0..1 spans the map, t = 0 is its bottom row\n"
-        "comment generation: of the triangle's youngest vertex; 0 is a base triangle's\n"
-        "comment split_by: tests that split the parent: 0 none (a base triangle), 1 Normal Test, "
-        "2 Summed Height Test, 3 both{}\n"
-        "comment stopped_by: tests that kept an edge whole which Normal{} Summed Height{} Test would split: "
-        "sum of 4 View Test, 8 Tex Coord Test, 16 Generation Test\n"
-        "comment base: the base triangle it descends from\n"
-        "element vertex {}\n"
-        "property double x\n"
-        "property double y\n"
-        "property double z\n"
-        "property float nx\n"
-        "property float ny\n"
-        "property float nz\n"
-        "property double s\n"
-        "property double t\n"
-        "element face {}\n"
-        "property list uchar int vertex_indices\n"
-        "property uchar generation\n"
-        "property uchar split_by\n"
-        "property uchar stopped_by\n"
-        "property int base\n"
-        "end_header\n",
-        highlight ? "; 32 is added where the Highlight Test was true" : "", highlight ? "," : " or",
-        highlight ? " or Highlight" : "", indexed.vertices.size(), indexed.triangles.size()));
+    file.write(
+        fmt::format("ply\n"
+                    "format binary_little_endian 1.0\n"
+                    "comment tessera: adaptively tessellated, displaced mesh; culled triangles left out\n"
+                    "comment x y z: displaced position, model units; nx ny nz: normal of the displaced surface\n"
+                    "comment s t: texture coordinates, 0..1 spans the map, t = 0 is its bottom row\n"
+                    "comment generation: of the triangle's youngest vertex; 0 is a base triangle's\n"
+                    "comment split_by: tests that split the parent: 0 none (a base triangle), 1 Normal Test, "
+                    "2 Summed Height Test, 3 both{}\n"
+                    "comment stopped_by: tests that stopped a split requested by the Normal{} Summed Height{} Test: "
+                    "sum of 4 View Test, 8 Tex Coord Test, 16 Generation Test\n"
+                    "comment base: the base triangle it descends from\n"
+                    "element vertex {}\n"
+                    "property double x\n"
+                    "property double y\n"
+                    "property double z\n"
+                    "property float nx\n"
+                    "property float ny\n"
+                    "property float nz\n"
+                    "property double s\n"
+                    "property double t\n"
+                    "element face {}\n"
+                    "property list uchar int vertex_indices\n"
+                    "property uchar generation\n"
+                    "property uchar split_by\n"
+                    "property uchar stopped_by\n"
+                    "property int base\n"
+                    "end_header\n",
+                    highlight ? "; 32 is added where the Highlight Test was true" : "", highlight ? "," : " or",
+                    highlight ? " or Highlight" : "", indexed.vertices.size(), indexed.triangles.size()));
     Record record(file);
     for (const IndexedMesh::Vertex& v : indexed.vertices) {
         const auto& corner = mesh.triangles[v.triangle].corners[v.corner];

@@ -34,21 +34,20 @@ std::vector<SaturationFigure> saturation_figures(const MachineSetup& setup, cons
          "widen formats.position_bits"},
         {"normal", saturations.normal, "value", "N, T or N' beyond the normal's format", "widen formats.normal_bits"},
         {"screen_position", saturations.screen_position, "value", "P's beyond the screen's format",
-         "widen formats.screen_bits, or move camera.eye back: the View Test sees an edge that reaches there "
-         "too "
+         "widen formats.screen_bits, or move camera.eye back: the View Test measures such edges too "
          "short"},
-        {"view_distance", saturations.view_distance, "value", "w beyond the position's format: the eye is far",
+        {"view_distance", saturations.view_distance, "value", "w beyond the position's format: the eye is too far away",
          "widen formats.position_bits"},
         {"screen_normal", saturations.screen_normal, "value", "N's beyond the normal's format",
          "widen formats.normal_bits"},
         {"degenerate_normal", saturations.degenerate_normal, "value", "zero vectors that stayed zero",
-         "the normals at an edge's ends are opposite: use a base mesh of more triangles there"},
+         "the normals at an edge's ends are opposite: use a base mesh with more triangles there"},
         {"generation", saturations.generation, "value",
          "generations of inserted vertices beyond their field: only with the Generation Test off",
          "tests.generation = true, or widen formats.generation_bits"},
         {"intensity", saturations.intensity, "value",
-         "vertices that face the light fully: 256 of 256, lit as 255, the highest of Lighting's 8 bits", nullptr,
-         "no key widens Lighting's 8 bits, and their highest is full light"},
+         "vertices that face the light fully: 256 of 256, lit as 255, the maximum of Lighting's 8 bits", nullptr,
+         "no key widens Lighting's 8 bits, and their maximum is full light"},
     };
 }
 

@@ -25,16 +25,16 @@ void format_figures(std::vector<Figure>& all, const MachineSetup& setup) {
     const datapath::Widths widths = datapath::stream_widths(formats);
     FigureGroup c(all, "formats");
     c.add("position_bits", formats.position.bits, "bit", "P, P', one component");
-    c.add("position_fraction", formats.position.fraction, "bit", "of which behind the point");
+    c.add("position_fraction", formats.position.fraction, "bit", "of these, fraction bits");
     c.add("model_scale", setup.model_scale.scale, "world/model", "world unit of the machine per unit of the model");
     c.add("normal_bits", formats.normal.bits, "bit", "N, T, N', N's, normal map, one component");
     c.add("texture_bits", formats.texture.bits, "bit", "u or v, the border bit included");
-    c.add("tex_coord_fraction", formats.tex_coord_fraction, "bit", "of u or v, what the Tex Coord Test compares");
+    c.add("tex_coord_fraction", formats.tex_coord_fraction, "bit", "of u or v, as compared by the Tex Coord Test");
     c.add("displacement_bits", formats.displacement.bits, "bit", "d");
     c.add("summed_height_bits", formats.summed_height.bits, "bit",
           setup.summed_height_bits_chosen ? "SAT entry, chosen for this mesh" : "SAT entry, as configured");
     c.add("largest_rectangle_sum", setup.largest_rectangle_sum, "code",
-          "bound on any rectangle's sum over this mesh: what the SAT entry must hold");
+          "bound on any rectangle's sum over this mesh, which the SAT entry must hold");
     c.add("summed_height_bits_needed",
           setup.largest_rectangle_sum == 0 ? 1 : 64 - datapath::leading_zeros(setup.largest_rectangle_sum), "bit",
           "narrowest SAT entry that holds that sum");
@@ -85,7 +85,7 @@ void cache_figures(std::vector<Figure>& all, const char* name, const Simulation&
         bytes += its.bytes_fetched();
     }
     FigureGroup c(all, name);
-    c.add("cache_hits", hits, "entry", "entries whose line was there, or on its way");
+    c.add("cache_hits", hits, "entry", "entries whose line was present or being fetched");
     c.add("cache_fills", fills, "line", "lines fetched from off-chip memory");
     c.add("cache_hit_rate", 100 * ratio(hits, entries), "percent", "of entries read");
     c.add("bytes_fetched", bytes, "byte", "of these lines");
@@ -115,9 +115,9 @@ void host_figures(std::vector<Figure>& all, const MachineSetup& setup, std::uint
     c.add("tessellated_mesh_bytes_unindexed", whole, "byte",
           "likewise, three vertices per triangle as the base mesh is sent");
     c.add("bandwidth_saving", ratio(indexed, base), "times",
-          "tessellated mesh, indexed, over base mesh, per frame; tables left out");
+          "tessellated mesh, indexed, over base mesh, per frame, without tables");
     c.add("frames_to_pay_for_tables", indexed > base ? ratio(tables, indexed - base) : 0.0, "frame",
-          "after so many frames the tables' bytes are saved; 0: never");
+          "number of frames after which the tables' bytes are saved; 0: never");
 }
 
 void area_figures(std::vector<Figure>& all, const Simulation& simulation) {
@@ -131,7 +131,7 @@ void area_figures(std::vector<Figure>& all, const Simulation& simulation) {
         part("_multipliers", unit.multipliers, "multiplier", "that give a result every initiation interval");
         part("_register_bits", unit.register_bits, "bit", "input buffers, pipeline registers, state");
         part("_memory_bits", unit.memory_bits, "bit", "a table, or the triangles that waited on chip");
-        part("_ports", unit.ports, "port", "entries a cycle, all banks together");
+        part("_ports", unit.ports, "port", "entries per cycle, all banks together");
     };
     for (const UnitArea& unit : units)
         add(unit);
@@ -145,23 +145,21 @@ void useful_work_figures(std::vector<Figure>& all, const Totals& totals, const D
     FigureGroup c(all, "useful_work");
     c.add("vertices", mesh.vertices, "vertex",
           "distinct vertices of the finished mesh, by t, P' and N', culled triangles included");
-    c.add(
-        "vertices_made", made, "vertex",
-        "displaced and transformed: three a base triangle, and the midpoint of each edge tested; of families, of each "
-        "edge split");
+    c.add("vertices_made", made, "vertex",
+          "displaced and transformed: three per base triangle, and the midpoint of each edge tested (with families: of "
+          "each edge split)");
     c.add("vertices_thrown_away", totals.thrown_away_vertices(), "vertex",
           "of these: midpoints of edges that were not split");
     c.add("made_per_vertex", ratio(made, mesh.vertices), "times", "vertices made per distinct vertex");
-    c.add("normals_transformed", normals, "normal",
-          "N's: a vertex's again in each triangle whose parent did not have it");
+    c.add("normals_transformed", normals, "normal", "N's, again for each triangle whose parent did not have it");
     c.add("normals_per_vertex", ratio(normals, mesh.vertices), "times", "normals transformed per distinct vertex");
     c.add("edges", mesh.tested_edges(), "edge",
           "distinct edges that were tested, by their two vertices: those of the finished mesh, and those that "
           "were split");
-    c.add("edge_tests", tested, "edge", "edges tested: one of a triangle, in each pass; final edges are not");
+    c.add("edge_tests", tested, "edge", "edges tested, counted per triangle and pass; final edges are not tested");
     c.add("normal_tests", evaluated.normal, "edge", "of these, edges whose Normal Test was evaluated");
     c.add("summed_height_tests", evaluated.summed_height, "edge",
-          "likewise the Summed Height Test, or the test in its place, unless it is switched off");
+          "likewise the Summed Height Test or its replacement, unless it is off");
     c.add("summed_height_tests_by_codes", evaluated.summed_height_by_codes, "edge",
           "of these, edges whose rectangles are single texels, with hardware.one_texel_from_map");
     c.add("tests_per_edge", ratio(tested, mesh.tested_edges()), "times", "edge tests per distinct edge");
@@ -195,10 +193,10 @@ std::vector<Figure> collect_statistics(const MachineSetup& setup, const Simulati
     FigureGroup run(all, "run");
     const bool timed = setup.design.transport == Transport::non_blocking;
     run.add("mode", timed ? "timed" : "functional", "",
-            timed ? "timed: non-blocking transport, to the cycle"
-                  : "functional: blocking transport, not timed; no cycles are claimed");
+            timed ? "timed: non-blocking transport, cycle-accurate"
+                  : "functional: blocking transport, untimed; no cycle counts");
     run.add("edges_tested", edges, "edge", "edges that went through Tessellation Tests");
-    run.add("edges_split", counts.edges_split, "edge", "of which split");
+    run.add("edges_split", counts.edges_split, "edge", "of these, split");
     run.add("triangles_finished", counts.finished, "triangle", "left the machine, culled ones included");
     run.add("edges_per_triangle", ratio(edges, counts.finished), "edge/triangle", "edges tested per finished triangle");
     format_figures(all, setup);
@@ -219,31 +217,29 @@ std::vector<Figure> collect_statistics(const MachineSetup& setup, const Simulati
 
     FigureGroup decide(all, "pass_or_tessellate");
     decide.add("passes", counts.passes, "triangle", "triangles that went through the tests");
-    decide.add("normal_passes", counts.normal_passes, "triangle", "went round once more for screen normals");
+    decide.add("normal_passes", counts.normal_passes, "triangle", "recirculated once more for screen normals");
     decide.add("split_by_normal", decided.split_by_normal, "edge",
                "split by the Normal Test, while the Summed Height Test was false");
     decide.add("split_by_summed_height", decided.split_by_summed_height, "edge",
-               "split by the Summed Height Test, or the test in its place, while the Normal Test was false");
+               "split by the Summed Height Test or its replacement, while the Normal Test was false");
     decide.add("split_by_both", decided.split_by_both, "edge", "split by both");
     if (setup.registers.tests.highlight_test) {
         decide.add("split_by_highlight", decided.split_by_highlight, "edge",
                    "split by neither, but by the Highlight Test alone");
         decide.add("split_in_highlight", decided.split_in_highlight, "edge",
-                   "split while the Highlight Test was true, whatever the others said");
+                   "split while the Highlight Test was true, whatever the other results");
     }
     if (setup.registers.triangulation == datapath::Triangulation::greatest_rank)
         decide.add("edges_uncut", counts.edges_uncut, "edge",
-                   "asked to be split while another edge of the triangle was cut, and were tested again");
-    decide.add("stopped_by_view", decided.stopped_by_view, "edge",
-               "kept whole by the View Test (perhaps among others)");
+                   "requested a split while another edge of the triangle was split, and were tested again");
+    decide.add("stopped_by_view", decided.stopped_by_view, "edge", "stopped by the View Test (possibly among others)");
     decide.add("stopped_by_tex_coord", decided.stopped_by_tex_coord, "edge", "likewise the Tex Coord Test");
     decide.add("stopped_by_generation", decided.stopped_by_generation, "edge", "likewise the Generation Test");
-    const char* const alone = "kept whole by this test alone: had it been true, the edge would have been split";
+    const char* const alone = "stopped by this test alone: otherwise the edge would have been split";
     decide.add("stopped_by_view_alone", decided.stopped_by_view_alone, "edge", alone);
     decide.add("stopped_by_tex_coord_alone", decided.stopped_by_tex_coord_alone, "edge", alone);
     decide.add("stopped_by_generation_alone", decided.stopped_by_generation_alone, "edge", alone);
-    decide.add("stopped_by_several", decided.stopped_by_several, "edge",
-               "kept whole by two or three of these tests, so that none of them decided");
+    decide.add("stopped_by_several", decided.stopped_by_several, "edge", "stopped by two or three of these tests");
     decide.add("culled", counts.culled, "triangle", "finished triangles that face away");
 
     FigureGroup tessellation(all, "tessellation");
@@ -251,7 +247,7 @@ std::vector<Figure> collect_statistics(const MachineSetup& setup, const Simulati
     tessellation.add("made_into_2", made[2], "triangle", "one edge split");
     tessellation.add("made_into_3", made[3], "triangle", "two edges split");
     tessellation.add("made_into_4", made[4], "triangle", "three edges split");
-    tessellation.add("passed_unchanged", made[1], "triangle", "finished base triangles on their way to fetch normals");
+    tessellation.add("passed_unchanged", made[1], "triangle", "finished base triangles recirculated for normals");
 
     FigureGroup queue(all, "triangle_queue");
     queue.add("taken", totals.queued, "triangle", "triangles put in");

@@ -138,7 +138,7 @@ std::string binding_text(const Pipeline& pipeline, std::uint64_t cycles, const B
                             is_memory(*found.first.units[0]) ? "its port slots are taken" : "its throughput is used");
     const auto [waiting, most] = longest_wait(pipeline, found.first.units[0]);
     if (waiting != nullptr)
-        text += fmt::format("; {} is held up by {} in {:.1f} % of all cycles", unit_name(*waiting),
+        text += fmt::format("; {} is delayed by {} in {:.1f} % of all cycles", unit_name(*waiting),
                             several ? unit_name(*found.first.units[0]) : "it", 100 * ratio(most, cycles));
     if (found.bound() > 0)
         text += fmt::format("; without {} at most {:.1f} times faster, bounded by {}, {} {:.1f} %",
@@ -210,7 +210,7 @@ std::string queue_line(const Unit& unit, std::uint64_t cycles) {
 std::string bottleneck_text(const Pipeline& pipeline, std::uint64_t cycles) {
     const Bottleneck found = find_bottleneck(pipeline, cycles);
     if (found.first.units.empty())
-        return "nothing was done";
+        return "none: no unit was busy";
     return found.binding ? binding_text(pipeline, cycles, found) : latency_text(pipeline, cycles, found);
 }
 
@@ -236,13 +236,13 @@ std::string timing_text(const Simulation& simulation) {
     return fmt::format(
                "{} cycles. In each a unit is in one state, the first of these that applies, in per cent of all cycles:\n"
                "  blocked  a finished item is not taken\n"
-               "  busy     an item is worked on that has all it needs; in a memory: a request is being answered\n"
-               "  memory   table entries have been asked for and have not come\n"
-               "  starved  nothing to work on, or the other branch's results are still to come\n"
+               "  busy     working on an item with all its inputs; in a memory: answering a request\n"
+               "  memory   table entries were requested and have not arrived\n"
+               "  starved  nothing to work on, or the other branch's results have not arrived\n"
                "utilisation: items times initiation interval (in a memory: port slots taken; off chip: cycles of the "
-               "channel,\nwhich caches use, too), in per cent of all cycles; 100 is the most the unit can do. items: taken; "
+               "channel,\nwhich caches use, too), in per cent of all cycles; 100 is the unit's maximum. items: taken; "
                "in a memory,\nrequests. items/kcyc: in 1000 cycles. occup.: items in the unit, on average; most: at a "
-               "time. cause: who held it\nup longest in each state. Queues and joins do no work: they have a rate and a "
+               "time. cause: the unit\nthat delayed it longest in each state. Queues and joins do no work: they have a rate and a "
                "level.\n\n",
                cycles) +
            tables + "bottleneck: " + bottleneck_text(simulation.last_machine().pipeline, cycles) + "\n";

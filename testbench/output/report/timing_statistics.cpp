@@ -16,7 +16,7 @@ void run_figures(std::vector<Figure>& all, const Simulation& simulation) {
     const std::uint64_t cycles = simulation.cycles();
     const Bottleneck bottleneck = find_bottleneck(p, cycles);
     FigureGroup run(all, "timing");
-    run.add("cycles", cycles, "cycle", "from the start to the end of the last in which anything happened");
+    run.add("cycles", cycles, "cycle", "from the start to the end of the last active cycle");
     run.add("clock_period", simulation.setup.design.timing.cycle_picoseconds, "ps", "one cycle");
     run.add("time", static_cast<double>(cycles) * simulation.setup.design.timing.cycle_picoseconds * 1e-12, "s",
             "cycles times the clock's period");
@@ -26,24 +26,24 @@ void run_figures(std::vector<Figure>& all, const Simulation& simulation) {
     run.add("base_triangle_share", ratio(totals.host_triangles, totals.host_triangles + totals.queue_triangles), "",
             "base triangles in all triangles that Get Triangle took");
     run.add("most_triangles_ahead_of_parts", p.most_ahead_of_parts(), "triangle",
-            "that waited for their first part where its parts come together");
+            "that waited for their first part at the join");
     run.add(
         "bottleneck", bottleneck.binding ? bottleneck.first.names() : "none", "",
         "the units or memories of the highest utilisation, if that is at least 85 %; none: latency binds; of several "
         "machines, in the last to finish");
     run.add("bottleneck_bound", bottleneck.bound(), "times",
-            "how many times faster at most without it, or, if latency binds, without any wait");
-    run.add("bottleneck_in_words", bottleneck_text(p, cycles), "", "why");
+            "largest possible speed-up without it or, if latency binds, without any wait");
+    run.add("bottleneck_in_words", bottleneck_text(p, cycles), "", "explanation");
 }
 
 /// Figures that queues and wires, which do no work, lack.
 void state_figures(FigureGroup& group, const Unit& unit, std::uint64_t cycles) {
     const Activity& activity = unit.activity();
-    group.add("busy", activity.cycles_in(State::busy), "cycle", "working on an item that has all it needs");
+    group.add("busy", activity.cycles_in(State::busy), "cycle", "working on an item with all its inputs");
     group.add("starved", activity.cycles_in(State::starved), "cycle",
-              "nothing to work on, or the other branch's results are still to come");
+              "nothing to work on, or the other branch's results have not arrived");
     group.add("waiting_for_memory", activity.cycles_in(State::waiting_for_memory), "cycle",
-              "no item has all it needs; table entries have been asked for and have not come");
+              "no item has all its inputs; table entries were requested and have not arrived");
     group.add("blocked", activity.cycles_in(State::blocked), "cycle", "a finished item is not taken");
     for (const Activity::Share& share : activity.shares()) {
         if (share.by == nullptr || share.cycles == 0)
@@ -54,20 +54,20 @@ void state_figures(FigureGroup& group, const Unit& unit, std::uint64_t cycles) {
         group.add(what + unit_name(*share.by), share.cycles, "cycle", "of these");
     }
     group.add("utilisation", utilisation(unit, cycles), "1",
-              "throughput used, of the most possible: items times initiation interval, or port slots taken");
+              "throughput as a fraction of the maximum: items times initiation interval, or port slots taken");
 }
 
 void unit_figures(std::vector<Figure>& all, const Unit& unit, std::uint64_t cycles) {
     const Activity& activity = unit.activity();
     FigureGroup group(all, "timing." + unit_name(unit));
     group.add("items", activity.items_in(), "item", "taken; in a memory, requests");
-    group.add("items_out", activity.items_out(), "item", "finished and handed on, or dropped as not needed");
+    group.add("items_out", activity.items_out(), "item", "finished and sent on, or dropped as not needed");
     if (!is_queue_or_join(unit))
         state_figures(group, unit, cycles);
     group.add("throughput", ratio(activity.items_out(), cycles), "item/cycle", "items out per cycle");
     group.add("occupancy", ratio(activity.item_cycles(), cycles), "item", "items in the unit, on average");
     group.add("latency", ratio(activity.item_cycles(), activity.items_out()), "cycle",
-              "an item's stay in the unit, on average");
+              "time of an item in the unit, on average");
     group.add("high_water_mark", activity.high_water_mark(), "item", "most at a time");
 }
 
@@ -76,7 +76,7 @@ void queue_figures(std::vector<Figure>& all, const Simulation& simulation, const
     FigureGroup group(all, "timing." + unit_name(queue));
     group.add("capacity", simulation.setup.design.queue.capacity, "triangle", "on chip; 0: unbounded");
     group.add("on_chip_high_water_mark", queue.on_chip_high_water_mark(), "triangle",
-              "most on chip, one on its way out not counted");
+              "most on chip, without one being spilled");
     group.add("spilled", queue.spilled(), "triangle", "written to off-chip memory");
     group.add("refilled", queue.refilled(), "triangle", "read back");
     group.add("spill_bytes", (queue.spilled() + queue.refilled()) * entry, "byte", "both directions");

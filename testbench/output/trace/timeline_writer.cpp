@@ -61,7 +61,7 @@ std::string arguments(std::string_view detail, const TimelineWriter::Item* item)
 TimelineWriter::TimelineWriter(std::ostream& out, std::uint64_t cycle_picoseconds, TraceWindow window)
     : out_(out), cycle_picoseconds_(cycle_picoseconds), window_(window) {
     if (cycle_picoseconds == 0)
-        throw std::logic_error("TimelineWriter: a clock without period");
+        throw std::logic_error("TimelineWriter: the clock has no period");
     buffer_.reserve(2 * flush_bytes);
     buffer_ = R"({"displayTimeUnit":"ns","traceEvents":[
 {"ph":"M","pid":1,"name":"process_name","args":{"name":"tessera"}})";
@@ -81,7 +81,7 @@ void TimelineWriter::interval(Track track, const char* state, const char* detail
                               std::uint64_t end, const Item* item) {
     check_open();
     if (track >= tracks_)
-        throw std::logic_error("TimelineWriter: an interval of no track");
+        throw std::logic_error("TimelineWriter: an interval without a track");
     reached_ = reached_ || end > window_.first;
     begin = std::max(begin, window_.first);
     end = end <= window_.last ? end : window_.last + 1;
@@ -95,7 +95,7 @@ void TimelineWriter::interval(Track track, const char* state, const char* detail
 void TimelineWriter::flow(Track track, FlowStep step, std::uint64_t triangle, std::uint64_t cycle) {
     check_open();
     if (track >= tracks_)
-        throw std::logic_error("TimelineWriter: a flow through no track");
+        throw std::logic_error("TimelineWriter: a flow without a track");
     if (cycle < window_.first || cycle > window_.last)
         return;
     const char* const phase = step == FlowStep::begin ? "s" : step == FlowStep::pass ? "t" : "f";

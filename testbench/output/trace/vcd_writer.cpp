@@ -43,7 +43,7 @@ std::string make_code(VcdWriter::Signal signal) {
 VcdWriter::VcdWriter(std::ostream& out, std::uint64_t cycle_picoseconds, TraceWindow window)
     : out_(out), window_(window), cycle_units_(cycle_picoseconds), buffer_(buffer_bytes) {
     if (cycle_picoseconds == 0)
-        throw std::logic_error("VcdWriter: a clock without period");
+        throw std::logic_error("VcdWriter: the clock has no period");
     constexpr std::array<const char*, 5> units = {"ps", "ns", "us", "ms", "s"};
     std::size_t power = 0;
     for (; cycle_units_ % 10 == 0 && power + 1 < 3 * units.size(); ++power)
@@ -56,10 +56,10 @@ VcdWriter::Signal VcdWriter::add(const std::string& scope, const std::string& na
     if (header_written_)
         throw std::logic_error("VcdWriter: " + both + " was added after the first cycle");
     if (bits < 1 || bits > 64 || !is_identifier(name))
-        throw std::logic_error("VcdWriter: " + both + " has no 1 to 64 bits or no name that VCD allows");
+        throw std::logic_error("VcdWriter: " + both + " needs 1 to 64 bits and a name that VCD allows");
     std::vector<Variable>& variables = scopes_[find_scope(scope)].variables;
     if (std::any_of(variables.begin(), variables.end(), [&](const Variable& v) { return v.name == name; }))
-        throw std::logic_error("VcdWriter: " + both + " was added before");
+        throw std::logic_error("VcdWriter: " + both + " was already added");
 
     const auto signal = static_cast<Signal>(wires_.size());
     const std::string tail = (bits == 1 ? "" : " ") + make_code(signal) + "\n";
@@ -78,7 +78,7 @@ std::size_t VcdWriter::find_scope(const std::string& path) {
         const std::size_t end = std::min(path.find('.', begin), path.size());
         const std::string name = path.substr(begin, end - begin);
         if (!is_identifier(name))
-            throw std::logic_error("VcdWriter: VCD allows no scope \"" + path + "\"");
+            throw std::logic_error("VcdWriter: VCD does not allow the scope \"" + path + "\"");
         const std::vector<std::size_t>& known = scopes_[scope].scopes;
         const auto found =
             std::find_if(known.begin(), known.end(), [&](std::size_t s) { return scopes_[s].name == name; });
@@ -116,7 +116,7 @@ void VcdWriter::write_scope(const Scope& scope, std::string& text) const {
 
 void VcdWriter::end_cycle(std::uint64_t cycle) {
     if (finished_ || cycle < next_cycle_)
-        throw std::logic_error("VcdWriter: cycle " + std::to_string(cycle) + " has ended already");
+        throw std::logic_error("VcdWriter: cycle " + std::to_string(cycle) + " has already ended");
     if (!header_written_)
         write_header();
     if (!past_window_) {
@@ -176,7 +176,7 @@ void VcdWriter::after_changes(std::uint64_t cycle) {
 
 void VcdWriter::finish(std::uint64_t cycle) {
     if (finished_)
-        throw std::logic_error("VcdWriter: finished twice");
+        throw std::logic_error("VcdWriter: finish() was called twice");
     if (!header_written_)
         write_header();
     const std::uint64_t end = std::max(cycle, next_cycle_);

@@ -43,7 +43,7 @@ void promise_fits(const Vertex& v, const Registers& registers) {
 
 void promise_midpoint(std::int64_t a, std::int64_t b, std::int64_t ab, std::int64_t ba) {
     promise(ab == ba, "a midpoint depends on its operands' order");
-    promise(std::min(a, b) <= ab && ab <= std::max(a, b), "a midpoint does not lie between its operands");
+    promise(std::min(a, b) <= ab && ab <= std::max(a, b), "a midpoint is not between its operands");
     const std::int64_t off = a + b - 2 * ab;  // in half LSB
     promise(off == 0 || off == 1, "a midpoint is not rounded towards minus infinity");
 }
@@ -65,7 +65,7 @@ void check_normalise(std::int64_t x, std::int64_t y, std::int64_t z, const Forma
     promise(holds_vector(formats.normal, unit), "a unit vector does not fit its format");
     promise(saturations.normal == 0, "a unit vector saturates");
     const bool zero = x == 0 && y == 0 && z == 0;
-    promise((saturations.degenerate_normal == 1) == zero, "a vector without direction is not counted, or another is");
+    promise((saturations.degenerate_normal == 1) == zero, "a zero vector is not counted, or another vector is");
     if (zero) {
         promise(unit == Direction{}, "a zero vector does not stay zero");
         return;
@@ -78,7 +78,7 @@ void check_normalise(std::int64_t x, std::int64_t y, std::int64_t z, const Forma
         const double exact = std::ldexp(static_cast<double>(component), formats.normal.fraction) / length;
         return std::abs(exact - result) <= bound;
     };
-    promise(close(x, unit.x) && close(y, unit.y) && close(z, unit.z), "normalise is beyond its error bound");
+    promise(close(x, unit.x) && close(y, unit.y) && close(z, unit.z), "normalise exceeds its error bound");
 }
 
 std::int64_t doubled_area(const TexCoord& a, const TexCoord& b, const TexCoord& c) {
@@ -112,7 +112,8 @@ void check_triangulate(const Triangle& triangle) {
             for (std::size_t k = 0; k < static_cast<std::size_t>(children.count); ++k) {
                 const auto& child = children.children[k];
                 for (const std::uint8_t corner : child)
-                    promise(corner < 3 || (split >> (corner - 3) & 1) != 0, "a child has a vertex that was not made");
+                    promise(corner < 3 || (split >> (corner - 3) & 1) != 0,
+                            "a child has a vertex that was not inserted");
                 covered += doubled_area(points[child[0]], points[child[1]], points[child[2]]);
             }
             promise(covered == enclosed, "the children do not cover their parent");
@@ -154,9 +155,9 @@ class Checker {
         pass.triangle.vertices = {i, j, i};
         machine_.evaluate_edge(pass, 0);
         machine_.evaluate_edge(pass, 1);
-        promise(pass.edges[0].tests == pass.edges[1].tests, "an edge's tests depend on the side it is seen from");
+        promise(pass.edges[0].tests == pass.edges[1].tests, "an edge's tests depend on the order of its ends");
         promise(testing::same_bits(inserted_vertex(pass, 0), inserted_vertex(pass, 1)),
-                "an inserted vertex depends on the side its edge is seen from");
+                "an inserted vertex depends on the order of its edge's ends");
     }
 
     /// The Summed Height Table gives the sum of the map's texels; a constant map never splits.
@@ -175,7 +176,7 @@ class Checker {
             for (std::uint32_t y = r.first_row; y < r.last_row; ++y)
                 for (std::uint32_t x = r.first_column; x < r.last_column; ++x)
                     sum += case_.codes[std::size_t{y % map.height} * map.width + x % map.width];
-            promise(machine_.sum_around(centre, size) == sum, "the Summed Height Table gives another sum than the map");
+            promise(machine_.sum_around(centre, size) == sum, "the Summed Height Table's sum differs from the map's");
         }
         const bool constant = std::all_of(case_.codes.begin(), case_.codes.end(),
                                           [&](std::uint32_t code) { return code == case_.codes.front(); });
@@ -238,10 +239,10 @@ class Checker {
         promise(pack_triangle(triangle, formats(), bytes.data()), "a triangle does not fit its queue entry");
         const Triangle back = unpack_triangle(bytes.data(), formats());
         for (std::size_t k = 0; k < 3; ++k)
-            promise(testing::same_bits(back.vertices[k], triangle.vertices[k]), "a queue entry holds another vertex");
+            promise(testing::same_bits(back.vertices[k], triangle.vertices[k]), "a vertex changes in the queue");
         promise(back.base == triangle.base && back.split_by == triangle.split_by &&
                     back.stopped_by == triangle.stopped_by && back.finished == triangle.finished,
-                "a queue entry holds another triangle");
+                "a triangle changes in the queue");
     }
 
     struct Waiting {

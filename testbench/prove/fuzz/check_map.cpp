@@ -15,16 +15,16 @@ void promise_complete(const HeightMap& map) {
     promise(map.width >= 1 && map.width <= largest_map_side && map.height >= 1 && map.height <= largest_map_side,
             "a map's side is out of range");
     promise(map.values.size() == static_cast<std::size_t>(map.width) * static_cast<std::size_t>(map.height),
-            "not as many values as texels");
+            "the numbers of values and texels differ");
     promise(std::all_of(map.values.begin(), map.values.end(), [](float value) { return std::isfinite(value); }),
             "a value is not finite");
     const auto [lowest, highest] = std::minmax_element(map.values.begin(), map.values.end());
     promise(map.range_low <= static_cast<double>(*lowest) && static_cast<double>(*highest) <= map.range_high,
             "a value is beyond the map's range");
     promise(std::isfinite(map.range_low) && std::isfinite(map.range_high), "the map's range is not finite");
-    promise(std::isfinite(map.source_units) && map.source_units >= 1, "the source's unit is none");
+    promise(std::isfinite(map.source_units) && map.source_units >= 1, "the source's unit is not 1 or more");
     for (const std::string& repair : map.repairs)
-        promise(!repair.empty() && repair.find('\n') == std::string::npos, "a repair that is not a line of words");
+        promise(!repair.empty() && repair.find('\n') == std::string::npos, "a repair is empty or longer than a line");
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ void promise_vertex(const BaseVertex& v) {
         promise(std::isfinite(v.texture[k]), "a texture coordinate is not finite");
     promise(std::abs(safe_length(v.normal) - 1) < rounding, "a normal is not of unit length");
     promise(std::abs(safe_length(v.tangent) - 1) < rounding, "a tangent is not of unit length");
-    promise(std::abs(glm::dot(v.normal, v.tangent)) < rounding, "a tangent is not at right angles to its normal");
+    promise(std::abs(glm::dot(v.normal, v.tangent)) < rounding, "a tangent is not perpendicular to its normal");
     promise(v.handedness == 1 || v.handedness == -1, "a handedness is neither 1 nor -1");
 }
 
@@ -35,10 +35,10 @@ void promise_scale(const BaseMesh::TextureScale& s) {
 
 /// Checks the guarantees of base_mesh.h.
 void promise_complete(const BaseMesh& mesh) {
-    promise(!mesh.triangles.empty(), "a mesh without a triangle");
+    promise(!mesh.triangles.empty(), "the mesh has no triangles");
     for (const auto& t : mesh.triangles) {
         for (const std::uint32_t i : t)
-            promise(i < mesh.vertices.size(), "a triangle names a vertex that is not there");
+            promise(i < mesh.vertices.size(), "a triangle names a vertex that does not exist");
         promise(triangle_normal(mesh.vertices[t[0]].position, mesh.vertices[t[1]].position,
                                 mesh.vertices[t[2]].position) != glm::dvec3(0),
                 "a triangle has no area");
@@ -47,7 +47,7 @@ void promise_complete(const BaseMesh& mesh) {
         promise_vertex(vertex);
     promise_scale(mesh.texture_scale);
     for (const std::string& repair : mesh.repairs)
-        promise(!repair.empty(), "a repair without words");
+        promise(!repair.empty(), "a repair is empty");
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ void check_ply(std::string_view bytes) {
     try {
         const RecordedMesh mesh = read_ply(path);
         promise(mesh.normals.size() == mesh.positions.size() && mesh.textures.size() == mesh.positions.size(),
-                "not as many normals or texture coordinates as positions");
+                "the numbers of normals or texture coordinates and of positions differ");
         for (const glm::dvec3& p : mesh.positions)
             promise(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z), "a position is not finite");
         for (const glm::vec3& n : mesh.normals)
@@ -21,7 +21,7 @@ void check_ply(std::string_view bytes) {
             promise(std::isfinite(t.x) && std::isfinite(t.y), "a texture coordinate is not finite");
         for (const RecordedMesh::Triangle& t : mesh.triangles)
             for (const std::uint32_t i : t.vertices)
-                promise(i < mesh.positions.size(), "a triangle names a vertex that is not there");
+                promise(i < mesh.positions.size(), "a triangle names a vertex that does not exist");
     } catch (const InputError& error) {
         promise_message(error.what(), path.string());
     }

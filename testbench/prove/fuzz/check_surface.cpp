@@ -14,7 +14,7 @@ void check_surface(std::string_view bytes) {
     try {
         const BakedMap map = bake_heights(parse_surface(bytes, name), width, height);
         promise(map.width == width && map.height == height && map.values.size() == std::size_t{width} * height,
-                "a baked map of another size");
+                "the baked map has another size");
         for (const double value : map.values)
             promise(std::isfinite(value), "a baked height is not finite");
     } catch (const InputError& error) {

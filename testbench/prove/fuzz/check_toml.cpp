@@ -19,7 +19,7 @@ void check_setting(std::string_view setting) {
         apply_setting(job, setting);
     } catch (const InputError& error) {
         promise_message(error.what(), "--set " + printable(setting));
-        promise(same_settings(job, Job{}), "a setting that was refused left a trace");
+        promise(same_settings(job, Job{}), "a refused setting changed the job");
     }
 }
 
@@ -36,12 +36,12 @@ void check_toml(std::string_view bytes) {
                 promise(complaint(key, key.get(job)).empty(), key.name + " is out of its range");
         const std::string dump = dump_job(job);
         const Job again = parse_job(dump, "dumped.toml");
-        promise(same_settings(again, job), "a dumped job is another job");
-        promise(dump_job(again) == dump, "a dumped job dumps other bytes");
+        promise(same_settings(again, job), "a dumped job differs when read again");
+        promise(dump_job(again) == dump, "a dumped job differs when dumped again");
         try {
             validate(job);
         } catch (const InputError& error) {
-            promise(*error.what() != '\0', "a job is refused without a word");
+            promise(*error.what() != '\0', "a job is refused without a message");
         }
     } catch (const InputError& error) {
         promise_message(error.what(), name);

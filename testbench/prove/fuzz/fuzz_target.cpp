@@ -15,7 +15,7 @@ void promise_message(std::string_view message, std::string_view file) {
     if (message.substr(0, file.size()) != file || message.substr(file.size(), 1) != ":")
         throw BrokenPromise(fmt::format("the message does not begin with \"{}:\": {}", file, message));
     if (message.size() < file.size() + 3)
-        throw BrokenPromise(fmt::format("the message says nothing: {}", message));
+        throw BrokenPromise(fmt::format("the message is empty: {}", message));
     promise(is_utf8(message), "the message is not UTF-8");
     for (const char c : message) {
         const bool control = (static_cast<unsigned char>(c) < 0x20 && c != '\n') || c == '\x7f';

@@ -107,17 +107,17 @@ void Trial::try_edge(Machine& machine, const DirectEdge& direct, const Vertex& i
 
     ++result_.edges;
     if (!same_bits(inserted_, inserted_vertex(other, 0)) || !(one.edges[0].texture == inserted_.texture))
-        fault(result_.unlike_reversed, "another vertex is inserted on (j, i)", machine, one, inserted_);
+        fault(result_.unlike_reversed, "the vertex inserted on (j, i) differs", machine, one, inserted_);
     if (one.edges[0].tests != other.edges[0].tests || one.split != other.split)
         fault(result_.unlike_reversed,
-              fmt::format("(j, i) is decided otherwise: {:06b}", unsigned{other.edges[0].tests}), machine, one,
+              fmt::format("the tests of (j, i) differ: {:06b}", unsigned{other.edges[0].tests}), machine, one,
               inserted_);
     if (const char* const what = direct.fault_of_vertex(i, j, inserted_))
-        fault(result_.unlike_direct, fmt::format("{} is not what the definition says", what), machine, one, inserted_);
+        fault(result_.unlike_direct, fmt::format("{} differs from its definition", what), machine, one, inserted_);
     const std::uint8_t tests = direct.tests(i, j, inserted_, measures);
     if (tests != one.edges[0].tests)
-        fault(result_.unlike_direct, fmt::format("by definition the tests are {:06b}", unsigned{tests}), machine, one,
-              inserted_);
+        fault(result_.unlike_direct, fmt::format("the tests differ from their definitions: {:06b}", unsigned{tests}),
+              machine, one, inserted_);
 
     for (std::size_t bit = 0; bit < 6; ++bit)
         result_.yes[bit] += static_cast<unsigned>(tests) >> bit & 1U;
@@ -156,12 +156,12 @@ void Trial::try_moved(Machine& machine, const TrianglePass& here, const Vertex& 
     back.texture.v -= dv;
     if (!same_bits(back, inserted) || there.edges[0].tests != here.edges[0].tests)
         fault(result_.unlike_moved,
-              fmt::format("it comes out otherwise {}, {} further: {:06b}", du, dv, unsigned{there.edges[0].tests}),
+              fmt::format("the edge differs when shifted by {}, {}: {:06b}", du, dv, unsigned{there.edges[0].tests}),
               machine, here, inserted);
     machine.complete(i);
     if (!(i.displaced == here.triangle.vertices[0].displaced &&
           i.displaced_normal == here.triangle.vertices[0].displaced_normal))
-        fault(result_.unlike_moved, fmt::format("its end i lies elsewhere {}, {} further", du, dv), machine, here,
+        fault(result_.unlike_moved, fmt::format("its end i differs when shifted by {}, {}", du, dv), machine, here,
               inserted);
 }
 

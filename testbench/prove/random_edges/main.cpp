@@ -38,7 +38,7 @@ void print(const EdgeTrial& trial, std::uint64_t seed, double seconds) {
     const auto percent = [&](std::uint64_t value) {
         return 100 * static_cast<double>(value) / static_cast<double>(trial.edges);
     };
-    fmt::print("random edges, seed {}: {} edges, {} machines with formats usual, narrow, wide, any in turn\n", seed,
+    fmt::print("random edges, seed {}: {} edges, {} machines with usual, narrow, wide and any formats in turn\n", seed,
                number(trial.edges), number(trial.machines));
     fmt::print(
         "  true: Normal Test {:.1f} %, Summed Height Test {:.1f} %, View Test {:.1f} %, Tex Coord Test "
@@ -47,27 +47,24 @@ void print(const EdgeTrial& trial, std::uint64_t seed, double seconds) {
         percent(trial.yes[0]), percent(trial.yes[1]), percent(trial.yes[2]), percent(trial.yes[3]),
         percent(trial.yes[4]), percent(trial.yes[5]), percent(trial.splits));
     fmt::print(
-        "  thresholds exactly at the measure: Normal Test {}, Summed Height Test {}, View Test {}, Highlight "
+        "  thresholds equal to the measured value: Normal Test {}, Summed Height Test {}, View Test {}, Highlight "
         "Test "
         "{}\n",
         number(trial.at_limit[0]), number(trial.at_limit[1]), number(trial.at_limit[2]), number(trial.at_limit[3]));
-    fmt::print(
-        "  {} with an end behind the near plane, {} inserted normals without direction, {} tried again "
-        "periods "
-        "away\n",
-        number(trial.behind), number(trial.degenerate), number(trial.moved));
-    fmt::print("{} edges: {} unlike from the other end, {} unlike periods away, {} unlike the definitions\n",
+    fmt::print("  {} with an end behind the near plane, {} zero inserted normals, {} tried again shifted by periods\n",
+               number(trial.behind), number(trial.degenerate), number(trial.moved));
+    fmt::print("{} edges: {} differ from the other end, {} when shifted by periods, {} from the definitions\n",
                number(trial.edges), number(trial.unlike_reversed), number(trial.unlike_moved),
                number(trial.unlike_direct));
-    fmt::print(stderr, "{:.1f} s, {} edges a second\n", seconds,
+    fmt::print(stderr, "{:.1f} s, {} edges per second\n", seconds,
                number(static_cast<std::uint64_t>(static_cast<double>(trial.edges) / seconds)));
 }
 
 int try_edges(int argc, char** argv) {
     std::uint64_t seed = 1, edges = 1'000'000;
-    CLI::App app{"Tries random edges: the same from either end, and as the definitions say."};
-    app.add_option("--seed", seed, "what the edges follow from")->capture_default_str();
-    app.add_option("--edges", edges, "how many")
+    CLI::App app{"Tests random edges: results must be the same from either end and equal to the definitions."};
+    app.add_option("--seed", seed, "seed of the random edges")->capture_default_str();
+    app.add_option("--edges", edges, "number of edges")
         ->capture_default_str()
         ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 48));
     try {
@@ -79,10 +76,10 @@ int try_edges(int argc, char** argv) {
     const EdgeTrial trial = try_random_edges(seed, edges);
     print(trial, seed, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
     if (!trial.first_fault.empty())
-        fmt::print("the first: {}\n", trial.first_fault);
+        fmt::print("first fault: {}\n", trial.first_fault);
     const std::string untried = one_sided(trial);
     if (!untried.empty())
-        fmt::print("the {} said the same nearly always: it has not been tried\n", untried);
+        fmt::print("the {} had nearly always the same result: it was not exercised\n", untried);
     return static_cast<int>(trial.faults() == 0 && untried.empty() ? ExitCode::fine : ExitCode::check_failed);
 }
 

@@ -62,7 +62,7 @@ CaseResult run_case(const RandomCase& random_case, Mode mode) {
     const SetupResult checked_setup =
         check_setup(setup, GoldenJob(with_mode.job, base_mesh, height_map, setup.model_scale, setup), simulation);
     if (!checked_setup.passed())
-        fail(fmt::format("the set-up: {}", checked_setup.first_wrong));
+        fail(fmt::format("set-up: {}", checked_setup.first_wrong));
     const ConformanceResult conformance = scoreboard.result();
     if (conformance.mismatches > 0)
         fail(fmt::format("{} mismatches: {}", conformance.mismatches, conformance.first_mismatch));
@@ -71,7 +71,7 @@ CaseResult run_case(const RandomCase& random_case, Mode mode) {
     const std::uint64_t passes = totals.counts.passes;
     if (conformance.edges != totals.counts.edges_tested || 3 * passes != invariants.edges)
         fail(
-            fmt::format("the machine tested {} edges in {} passes, the scoreboard saw {}, the datapath by itself "
+            fmt::format("the machine tested {} edges in {} passes, the scoreboard received {}, the bare datapath "
                         "evaluates {}",
                         totals.counts.edges_tested, passes, conformance.edges, invariants.edges));
     for (const Conservation& equation : conservation(simulation))

@@ -67,7 +67,7 @@ int run_cases(const Order& order) {
         all.add(timed.figures);
         if (functional.failure.empty() && timed.failure.empty() &&
             functional.figures.mesh_digest != timed.figures.mesh_digest)
-            timed.failure = "the two modes leave different meshes";
+            timed.failure = "the two modes emit different meshes";
         if (!functional.failure.empty())
             leave_failure(random_case, Mode::functional, functional.failure, order);
         if (!timed.failure.empty())
@@ -87,16 +87,16 @@ int sc_main(int argc, char** argv) {
     sc_core::sc_report_handler::set_actions(sc_core::SC_INFO, sc_core::SC_DO_NOTHING);
     Order order;
     CLI::App app{
-        "Runs the machine on random meshes, maps and designs, checks every run, and leaves what failed as a "
-        "job."};
+        "Runs the machine on random meshes, maps and designs, checks every run, and writes failed cases as "
+        "jobs."};
     app.add_option("--seed", order.seed, "the first case")->capture_default_str();
     app.add_option("--count", order.count, "cases, of consecutive seeds")
         ->capture_default_str()
         ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 32));
     app.add_option("--write", order.write,
-                   "write the first case to this folder, for `tessera run FOLDER/job.toml`, and run nothing");
-    app.add_option("--failures", order.failures, "where cases that fail are written")->capture_default_str();
-    app.add_flag("--list", order.list, "a line for each case");
+                   "only write the first case to this folder, for `tessera run FOLDER/job.toml`");
+    app.add_option("--failures", order.failures, "folder for failed cases")->capture_default_str();
+    app.add_flag("--list", order.list, "print a line for each case");
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

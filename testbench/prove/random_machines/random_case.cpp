@@ -113,7 +113,7 @@ void settle(Random& random, RandomCase& random_case) {
         }
     while (edges >= RandomCase::most_edges) {
         if (tests.generation && tests.generation_limit == 0)
-            throw InputError("a base mesh of more edges than a case may have");
+            throw InputError("the base mesh has more edges than a case may have");
         coarsen(random, tests);
         edges = edges_of(random_case);
     }

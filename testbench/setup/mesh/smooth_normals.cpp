@@ -44,8 +44,8 @@ void complete_smooth_normals(BaseMesh& mesh) {
     }
     if (cancelling > 0) {
         mesh.repairs.push_back(
-            fmt::format("At {} point(s) the normals of the triangles around cancel: the first "
-                        "triangle's was taken.",
+            fmt::format("At {} point(s) the normals of the surrounding triangles cancel: the first "
+                        "triangle's was used.",
                         cancelling));
     }
 }

@@ -89,22 +89,22 @@ void complete_tangent_frames(BaseMesh& mesh) {
 
     if (flat_texture > 0) {
         mesh.repairs.push_back(
-            fmt::format("{} triangle(s) have no area in texture space and give no tangent.", flat_texture));
+            fmt::format("{} triangle(s) have no area in texture space and do not define a tangent.", flat_texture));
     }
     if (without > 0) {
         mesh.repairs.push_back(
-            fmt::format("{} point(s) without a tangent got a perpendicular of the normal.", without));
+            fmt::format("{} point(s) without a tangent got a vector perpendicular to the normal.", without));
     }
     if (cancelling > 0) {
         mesh.repairs.push_back(
-            fmt::format("At {} point(s) the directions of dp/du cancel (a pole, say): the tangent is a "
-                        "perpendicular of the normal.",
+            fmt::format("At {} point(s) the directions of dp/du cancel (for example at a pole): the tangent is any "
+                        "vector perpendicular to the normal.",
                         cancelling));
     }
     if (mixed > 0) {
         mesh.repairs.push_back(
             fmt::format("At {} point(s) the texture is mirrored in some triangles and not in others: "
-                        "the majority gave the handedness.",
+                        "the majority determined the handedness.",
                         mixed));
     }
 }

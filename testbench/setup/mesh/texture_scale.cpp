@@ -15,7 +15,7 @@ void measure_texture_scale(BaseMesh& mesh) {
     if (!(largest_area > 0)) {
         mesh.texture_scale = {};
         mesh.repairs.push_back(
-            "No triangle has an area in texture space: the world size of a texel was taken as that of a "
+            "No triangle has an area in texture space: a texel's world size was assumed to be that of a "
             "map one model unit wide and high.");
         return;
     }

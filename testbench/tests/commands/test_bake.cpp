@@ -102,7 +102,7 @@ TEST_CASE("bake: hostile arguments are refused in one line") {
     refused({"bake", dome, "--output", "a.pgm", "--mesh", "absent.toml"}, here, {"absent.toml"});
     refused({"bake", dome, "--output", "a.pgm", "--mesh", dome}, here, {"dome.toml:2", "quadric"});
     write_all(here.path() / "far.toml", "[quadric]\nshape = \"sphere\"\nradius = 0.1\ncentre = [9, 0, 0]\n");
-    refused({"bake", "far.toml", "--output", "a.pgm"}, here, {"far.toml:1: the quadric is nowhere"});
+    refused({"bake", "far.toml", "--output", "a.pgm"}, here, {"far.toml:1: the quadric was not found"});
     write_all(here.path() / "bad.toml", "[bezier]\nheights = [[0, 1], [2, 3]]\nweights = [[1, 1], [1, 0]]\n");
     refused({"bake", "bad.toml", "--output", "a.pgm"}, here, {"bad.toml:3:24:", "`weights`"});
     for (const char* const name : {"c.job.toml", "d.job.toml"})

@@ -51,7 +51,7 @@ TEST_CASE("the summary reports which test decided, with the statistics' figures"
         here.path());
     CHECK_THAT(end.out, Contains("split by                normal alone 6, summed height alone 0, both 0\n"));
     CHECK_THAT(end.out,
-               Contains("wanted, but stopped by  view alone 0, tex coord alone 0, generation alone 24, several 0\n"));
+               Contains("requested, stopped by   view alone 0, tex coord alone 0, generation alone 24, several 0\n"));
     const RunFolder run(here.path() / "out");
     CHECK(run.count("pass_or_tessellate", "split_by_normal") == 6);
     CHECK(run.count("pass_or_tessellate", "stopped_by_view_alone") == 0);

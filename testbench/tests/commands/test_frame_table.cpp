@@ -60,10 +60,10 @@ TEST_CASE("frames.txt: the bytes sent are listed by kind and beside the tessella
     CHECK(frames_traffic(rows) ==
           "  sent for the first frame  54,321 bytes: base mesh 1, displacement map 20, normal map 300, Summed "
           "Height Table 4,000, registers 50,000\n"
-          "  for a later one           309 bytes: base mesh 1, normal map 300, registers 8 (the most, "
+          "  sent for a later frame    309 bytes: base mesh 1, normal map 300, registers 8 (the largest, "
           "frame_001)\n"
           "  for all frames            54,938 bytes; the tessellated meshes, indexed, would be 108,630: the "
-          "host sends 0.51 times as much\n");
+          "host sends 0.51 times that size\n");
 }
 
 TEST_CASE("frames: the counts of a frame are read from its own figures") {

@@ -126,5 +126,5 @@ TEST_CASE("rank: a base mesh that the test cannot split is reported, with one th
                                    here.path());
     CHECK_THAT(end.out,
                Contains("edges of the base mesh never split: their ends are not an even number of texels apart") &&
-                   Contains("mesh.source = \"lattice\" suits it"));
+                   Contains("Use mesh.source = \"lattice\""));
 }

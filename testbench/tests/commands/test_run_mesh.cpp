@@ -174,7 +174,7 @@ TEST_CASE("compare and render read a run on a run, and the first run's own input
                Contains("runs/second/../first/mesh.ply") && Contains("left no mesh"));
     fs::remove_all(here.path() / "runs/first");
     CHECK_THAT(run_tessera({"compare", "runs/second"}, here.path()).err,
-               Contains("mesh.file") && Contains("../first") && Contains("is not there"));
+               Contains("mesh.file") && Contains("../first") && Contains("does not exist"));
 }
 
 TEST_CASE("a base mesh that is not a finished run's is refused with the reason") {
@@ -186,7 +186,7 @@ TEST_CASE("a base mesh that is not a finished run's is refused with the reason")
     write_all(here.path() / "runs/empty/job.toml", "");
     refused(arguments_of(on("empty", {})), here.path(), {"left no mesh", "interrupted"});
     run(here.path(), "first", {"tests.generation_limit=1"});
-    refused(arguments_of(on("first/mesh.ply", {})), here.path(), {"name the folder"});
+    refused(arguments_of(on("first/mesh.ply", {})), here.path(), {"name the run folder"});
     refused(arguments_of(on("first", {"output.folder=runs/first/"})), here.path(),
             {"output.folder", "its own base mesh"});
     CHECK(fs::exists(here.path() / "runs/first/mesh.ply"));

@@ -35,7 +35,7 @@ TEST_CASE("summary: each count of the machine is in its place") {
     CHECK(value_of(text, "triangles") == "0 base -> 9 finished, 2 culled");
     CHECK(value_of(text, "edges") == "33 tested, 17 split (51.5 %)");
     CHECK(value_of(text, "  split by") == "normal alone 10, summed height alone 4, both 1, highlight alone 2");
-    CHECK(value_of(text, "  wanted, but stopped by") ==
+    CHECK(value_of(text, "  requested, stopped by") ==
           "view alone 3, tex coord alone 4, generation alone 1, several 1");
     CHECK(value_of(text, "distinct edges") == "11, each tested 3.0 times on average");
     CHECK(value_of(text, "distinct vertices") == "6; 33 computed, 16 of them discarded, and 15 normals transformed");
@@ -53,7 +53,7 @@ TEST_CASE("summary: each count of the machine is in its place") {
     const std::string other = summary(run.setup, run.simulation, {}, {}, 0.5);
     CHECK(value_of(other, "triangles") == "1 base -> 9 finished, 2 culled");
     CHECK(value_of(other, "  split by") == "normal alone 10, summed height alone 4, both 1");
-    CHECK(value_of(other, "  wanted, but stopped by") ==
+    CHECK(value_of(other, "  requested, stopped by") ==
           "view alone 3, tex coord (half texels) alone 4, generation alone 1, several 1");
     CHECK(value_of(other, "distinct edges") == "0, each tested 0.0 times on average");
     CHECK(value_of(other, "distinct vertices") == "0; 33 computed, 13 of them discarded, and 15 normals transformed");

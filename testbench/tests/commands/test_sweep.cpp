@@ -205,7 +205,7 @@ TEST_CASE("sweep: if Slurm does not start, its test gets the reason") {
     const ProgramEnd end = checkout.run("scripts/checks/sweep_tests/slurm_cluster start cluster");
     INFO(end.text());
     CHECK(end.exit_code == 3);
-    CHECK_THAT(end.err, Contains("slurm_cluster: munged does not start") || Contains("only as root"));
+    CHECK_THAT(end.err, Contains("slurm_cluster: munged does not start") || Contains("needs root"));
 }
 
 TEST_CASE("sweep: an invalid study is refused before the first run, with file and line") {
@@ -225,7 +225,7 @@ TEST_CASE("sweep: an invalid study is refused before the first run, with file an
         {"\"queue\"", "\"queue", "small.toml: "},
         {"key = ", "keys = ", "small.toml:14: "},
         {"stack = { ", "stack = { \"timing.summed_height_table_ports\" = 2, ",
-         "small.toml:23: `timing.summed_height_table_ports` is on another axis, too, line 14"},
+         "small.toml:23: `timing.summed_height_table_ports` is also on another axis, line 14"},
     }));
     if (!sweeps_run())
         return;

@@ -157,7 +157,7 @@ TEST_CASE("a folder that is not for a run is refused") {
                        here.path() / "work/deep", {"output.folder = \"" + folder + "\""});
     };
     for (const std::string& folder : {std::string("/"), std::string(".."), std::string("../.."), here.path().string()})
-        CHECK_THAT(folder_refused(folder), Contains("holds the working folder"));
+        CHECK_THAT(folder_refused(folder), Contains("contains the current directory"));
 
     write_all(here.path() / "work/deep/runs/frame_001/mesh.ply", "mine");
     CHECK_THAT(folder_refused("runs", {"--set", "frames.count=2"}), Contains("runs/frame_001/mesh.ply"));
@@ -303,7 +303,7 @@ TEST_CASE("a file that cannot be removed or replaced leaves the earlier run unch
         INFO(refused.text());
         CHECK(refused.exit_code == 2);
         CHECK_THAT(refused.err, Contains("output.folder = \"out/run\"") && Contains(std::string("out/run/") + name) &&
-                                    Contains("move the file away, or choose another"));
+                                    Contains("move the file, or choose another"));
         CHECK(files_in(run) == mine);
         fs::remove_all(run);
     }

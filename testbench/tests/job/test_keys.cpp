@@ -240,7 +240,7 @@ TEST_CASE("the map's range is full, data or two values") {
     CHECK(job.map.range.kind == MapRange::Kind::data);
     apply_setting(job, "map.range=[3, 4]");
     CHECK(job.map.range.low == 3);
-    CHECK_THAT(set_error_of("map.range=[2, 2]"), Contains("its low end not below its high end"));
+    CHECK_THAT(set_error_of("map.range=[2, 2]"), Contains("a low end that is not below its high end"));
     CHECK_THAT(set_error_of("map.range=[1, nan]"), Contains("not a finite number"));
     CHECK_THAT(set_error_of("map.range=[1, 2, 3]"), Contains("or two numbers"));
     CHECK_THAT(set_error_of("map.range=\"dat\""), Contains("did you mean \"data\"?"));

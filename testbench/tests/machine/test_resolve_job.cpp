@@ -201,11 +201,10 @@ TEST_CASE("a model beyond the range of the camera keys is refused with a remedy"
     const auto refusal = [](const BaseMesh& mesh) {
         return testing::input_error_of([&] { resolve_job(Job{}, mesh, map_of(0, 1)); });
     };
-    CHECK_THAT(
-        refusal(make_sphere(8, 4, 1e20)),
-        Contains("out of range") && Contains("it follows from a base mesh of 2e+20 model units; scale the mesh"));
+    CHECK_THAT(refusal(make_sphere(8, 4, 1e20)),
+               Contains("out of range") && Contains("derived from a base mesh of 2e+20 model units; scale the mesh"));
     CHECK_THAT(refusal(box(2, 2, 2, {0, -3e13, 5})),
-               Contains("out of range") && Contains("it follows from a base mesh of 2 model units around (1, "
+               Contains("out of range") && Contains("derived from a base mesh of 2 model units around (1, "
                                                     "-3e+13, 6); move the mesh to the origin"));
 }
 
@@ -217,8 +216,8 @@ TEST_CASE("setup and golden model refuse a job that is not resolved as a program
     CHECK_NOTHROW(GoldenJob(job, plane, map, setup.model_scale));
     job.camera.up = automatic_vector;
     CHECK_THROWS_WITH(make_setup(job, plane, map),
-                      "make_setup: camera.up is automatic; the job must have gone "
-                      "through resolve_job()");
+                      "make_setup: camera.up is \"auto\"; call "
+                      "resolve_job() on the job first");
     CHECK_THROWS_WITH(GoldenJob(job, plane, map, setup.model_scale),
-                      "GoldenJob: camera.up is automatic; the job must have gone through resolve_job()");
+                      "GoldenJob: camera.up is \"auto\"; call resolve_job() on the job first");
 }

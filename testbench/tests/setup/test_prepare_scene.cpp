@@ -129,11 +129,11 @@ TEST_CASE("an invalid scene is refused with the value and a remedy") {
         {"`light.direction` has no direction", [](Scene& s) { s.settings.light.direction = {}; }},
         {"vertices[2] has a value that is not finite", [](Scene& s) { s.vertices[2].position[1] = nan; }},
         {"triangles[1] names vertex 4 of 4", [](Scene& s) { s.triangles[1][2] = 4; }},
-        {"of 2 triangles none has an area",
+        {"none of the 2 triangles has an area",
          [](Scene& s) {
              s.triangles = {{0, 1, 1}, {2, 2, 2}};
          }},
-        {"of 0 triangles none has an area", [](Scene& s) { s.triangles.clear(); }},
+        {"none of the 0 triangles has an area", [](Scene& s) { s.triangles.clear(); }},
         {"a map of 0 x 4 texels", [](Scene& s) { s.map_width = 0; }},
         {"the map has 16 values, but map_width x map_height = 20", [](Scene& s) { s.map_width = 5; }},
         {"the map has a value that is not finite", [](Scene& s) { s.map[3] = static_cast<float>(nan); }},
@@ -159,5 +159,5 @@ TEST_CASE("triangles without area are left out of a scene, with a remark") {
     scene.triangles.push_back({0, 1, 1});
     const PreparedScene prepared = prepare(scene);
     CHECK(prepared.base_triangles.size() == 2);
-    CHECK(prepared.remarks.back() == "triangles left out for want of an area: 1");
+    CHECK(prepared.remarks.back() == "triangles dropped because they have no area: 1");
 }

@@ -61,7 +61,7 @@ TEST_CASE("a diagonal other than the golden model's is caught for each pair of s
             const ConformanceResult wrong = with(second ? Triangulation::first : Triangulation::second);
             CHECK(wrong.mismatches == 1);
             CHECK(test(wrong, "diagonal").mismatches == 1);
-            CHECK(wrong.first_mismatch.find("diagonal (which diagonal") != std::string::npos);
+            CHECK(wrong.first_mismatch.find("diagonal (diagonal of") != std::string::npos);
         }
     }
     CHECK(seen.size() == 6);

@@ -564,7 +564,7 @@ TEST_CASE("the golden run is judged by its triangles, the distance of the surfac
         }
     CHECK(stopped.bound_hit);
     CHECK(failed(stopped));
-    CHECK_THAT(conformance_text(checks), Contains("more than 1040, where its run was stopped"));
+    CHECK_THAT(conformance_text(checks), Contains("more than 1040; its run was stopped there"));
 }
 
 TEST_CASE("on a cylinder the allowed distance includes the rounding and turning of normals") {

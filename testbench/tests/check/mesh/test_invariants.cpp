@@ -123,8 +123,8 @@ TEST_CASE("missing and extra triangles are counted, and the first is shown") {
         other.some_triangle().base = 8;
         InvariantResult result = other.check();
         require_only(result, {{"missing_triangles", 1}, {"extra_triangles", 1}});
-        CHECK(result.first_violation.find("base triangle 8: a triangle of a base triangle that does not exist: P (") ==
-              0);
+        CHECK(result.first_violation.find(
+                  "base triangle 8: a triangle from a base triangle that does not exist: P (") == 0);
         other = plane;
         other.some_triangle().base = 3;
         require_only(other.check(), {{"missing_triangles", 1}, {"extra_triangles", 1}});
@@ -133,7 +133,7 @@ TEST_CASE("missing and extra triangles are counted, and the first is shown") {
         Plane other = plane;
         const EmittedTriangle triangle = other.some_triangle();
         other.mesh.triangles.push_back(triangle);
-        CHECK(other.check().first_violation.find("base triangle 5: a triangle too many: P (") == 0);
+        CHECK(other.check().first_violation.find("base triangle 5: an extra triangle: P (") == 0);
         other = plane;
         other.mesh.triangles.erase(other.mesh.triangles.begin() +
                                    (&other.some_triangle() - other.mesh.triangles.data()));
@@ -172,7 +172,7 @@ TEST_CASE("a triangle that differs in any field is found") {
         }
         const std::string text = check_with(changes[0]).first_violation;
         CHECK(text.find("base triangle 5: a triangle differs: P (") == 0);
-        CHECK(text.find("; it should be P (") != std::string::npos);
+        CHECK(text.find("; expected P (") != std::string::npos);
     }
     SECTION("in one of its places: it counts as missing and extra") {
         const std::vector<std::function<void(Corner&)>> changes{

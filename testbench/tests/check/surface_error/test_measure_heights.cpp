@@ -115,7 +115,7 @@ TEST_CASE("a surface that is not a height field is reported with the reason") {
     BaseMesh tilted = make_plane(1, 1, 2, 2);
     tilted.vertices[0].normal = glm::normalize(glm::dvec3(0.1, 0, 1));
     CHECK_FALSE(find_height_field(tilted, map, scaled(1), why));
-    CHECK(why == "the base mesh's normals are not those of its plane");
+    CHECK(why == "the base mesh's normals are not perpendicular to its plane");
     BaseMesh bent = make_plane(2, 2, 2, 2);
     bent.vertices[4].texture.x += 0.1;
     CHECK_FALSE(find_height_field(bent, map, scaled(1), why));

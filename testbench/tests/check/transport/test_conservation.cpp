@@ -59,11 +59,11 @@ const Equations two_triangles_functional{
     {"children of tessellation = taken by triangle_queue", {8, 8}},
     {"taken by triangle_queue = by get_triangle from it", {8, 8}},
     {"triangles cut by tessellation + finished = decided", {2 + 8, 10}},
-    {"triangles sent round for normals = decided for normals", {0, 0}},
+    {"triangles recirculated for normals = decided for normals", {0, 0}},
     {"finished = base triangles + edges split", {8, 2 + 6}},
     {"finished = emitted", {8, 8}},
     {"taken by the rasteriser = finished - culled", {8, 8}},
-    {"edges tested = 3 a pass", {30, 30}},
+    {"edges tested = 3 per pass", {30, 30}},
     {"reads of displacement_map by displace_vertex = vertices and midpoints", {36, 6 + 30}},
     {"reads of displacement_map = vertices, midpoints and texels", {36, 6 + 30}},
     {"reads of normal_map = vertices and edges of normal_test", {36, 6 + 30}},
@@ -87,7 +87,7 @@ Equations two_triangles_timed() {
         {"edges in tex_coord_test = edges", {30, 30}},
         {"edges in summed_height_test = its edges", {30, 30}},
         {"edges in view_test = edges", {30, 30}},
-        {"vertices taken by view_test = vertices, once a unit", {6, 6}},
+        {"vertices taken by view_test = vertices, once per unit", {6, 6}},
         {"edges taken from tessellation_tests = edges", {30, 30}},
         {"edges collected = edges", {30, 30}},
         {"entries of displacement_map = read", {36, 36}},
@@ -95,9 +95,9 @@ Equations two_triangles_timed() {
         {"entries of summed_height_table = read by its test", {30 * 12, 30 * 12}},
         {"requests to displacement_map = vertices, midpoints and texels", {36, 6 + 30}},
         {"requests to normal_map = vertices and edges of normal_test", {36, 6 + 30}},
-        {"requests to summed_height_table = of each edge that it tests by its table", {90, 90}},
-        {"triangles spilled = come back", {0, 0}},
-        {"requests to off_chip_memory = out and back", {0, 0}},
+        {"requests to summed_height_table = those of each edge tested by table", {90, 90}},
+        {"triangles spilled = refilled", {0, 0}},
+        {"requests to off_chip_memory = spills and refills", {0, 0}},
         {"bytes read from off_chip_memory = written", {0, 0}},
     });
     return all;
@@ -169,7 +169,7 @@ TEST_CASE("conservation: triangles sent round for normals and culled triangles b
     TimedRun simulation(setup);
     const Equations sides = sides_of(simulation);
     CHECK(sides.at("triangles taken by get_triangle = decided") == Sides{2, 2});
-    CHECK(sides.at("triangles sent round for normals = decided for normals") == Sides{1, 1});
+    CHECK(sides.at("triangles recirculated for normals = decided for normals") == Sides{1, 1});
     CHECK(sides.at("triangles cut by tessellation + finished = decided") == Sides{2, 2});
     CHECK(sides.at("taken by the rasteriser = finished - culled") == Sides{0, 0});
     CHECK(sides.at("triangles in lighting = finished - culled") == Sides{0, 0});
@@ -195,8 +195,8 @@ TEST_CASE("conservation: an extra item in a unit breaks its equation and no othe
         {tests.collect_tests, "edges collected = edges"},
         {&p.displacement_map, "requests to displacement_map = vertices, midpoints and texels"},
         {&p.normal_map, "requests to normal_map = vertices and edges of normal_test"},
-        {&p.height_table, "requests to summed_height_table = of each edge that it tests by its table"},
-        {&p.off_chip_memory, "requests to off_chip_memory = out and back"},
+        {&p.height_table, "requests to summed_height_table = those of each edge tested by table"},
+        {&p.off_chip_memory, "requests to off_chip_memory = spills and refills"},
     };
     for (const auto& [unit, equation] : units)
         expect_change(unit->name(), simulation, [&, it = unit] { it->activity().item_in(simulation.cycles()); },
@@ -213,7 +213,7 @@ TEST_CASE("conservation: an extra item on a stream breaks its equations") {
     expect_change("transform to pass_or_tessellate", simulation, [&] { offer(p.transform.to_join, point); },
                   {{"parts taken from transform = sent by get_triangle", {1, 0}}});
     expect_change("transform to view_test", simulation, [&] { offer(p.transform.to_view_test[0], corner); },
-                  {{"vertices taken by view_test = vertices, once a unit", {1, 0}}});
+                  {{"vertices taken by view_test = vertices, once per unit", {1, 0}}});
     expect_change("collect_tests to pass_or_tessellate", simulation,
                   [&] { offer(p.tessellation_tests[0].collect_tests->to_pass_or_tessellate, edge); },
                   {{"edges taken from tessellation_tests = edges", {1, 0}}});
@@ -304,7 +304,7 @@ TEST_CASE("conservation: an extra transformed vertex and extra decided triangles
                   {{"triangles taken by get_triangle = decided", {1, 1}},
                    {"triangles taken by get_triangle from the host = base triangles", {1, 0}},
                    {"triangles cut by tessellation + finished = decided", {1, 1}},
-                   {"triangles sent round for normals = decided for normals", {0, 1}},
+                   {"triangles recirculated for normals = decided for normals", {0, 1}},
                    {"finished = base triangles + edges split", {1, 1}},
                    {"finished = emitted", {1, 1}},
                    {"taken by the rasteriser = finished - culled", {1, 1}},
@@ -318,7 +318,7 @@ TEST_CASE("conservation: an extra transformed vertex and extra decided triangles
                    {"triangles in lighting = finished - culled", {0, 1}},
                    {"parts in calculate_new_u = vertices and edges", {0, 3}},
                    {"parts in normal_test = vertices and its edges", {0, 3}},
-                   {"vertices taken by view_test = vertices, once a unit", {0, 3}},
+                   {"vertices taken by view_test = vertices, once per unit", {0, 3}},
                    {"requests to displacement_map = vertices, midpoints and texels", {0, 3}},
                    {"requests to normal_map = vertices and edges of normal_test", {0, 3}}});
 
@@ -352,7 +352,7 @@ TEST_CASE("conservation: an extra transformed vertex and extra decided triangles
                    {"taken by triangle_queue = by get_triangle from it", {2, 0}},
                    {"triangles cut by tessellation + finished = decided", {1, 1}},
                    {"finished = base triangles + edges split", {0, 1}},
-                   {"edges tested = 3 a pass", {3, 3}},
+                   {"edges tested = 3 per pass", {3, 3}},
                    {"reads of displacement_map by displace_vertex = vertices and midpoints", {0, 3}},
                    {"reads of displacement_map = vertices, midpoints and texels", {0, 3}},
                    {"reads of normal_map = vertices and edges of normal_test", {0, 3}},
@@ -369,7 +369,7 @@ TEST_CASE("conservation: an extra transformed vertex and extra decided triangles
                    {"edges collected = edges", {0, 3}},
                    {"requests to displacement_map = vertices, midpoints and texels", {0, 3}},
                    {"requests to normal_map = vertices and edges of normal_test", {0, 3}},
-                   {"requests to summed_height_table = of each edge that it tests by its table", {0, 9}}});
+                   {"requests to summed_height_table = those of each edge tested by table", {0, 9}}});
 
     DecidedTriangle untested;
     untested.pass.triangle.finished = true;
@@ -378,7 +378,7 @@ TEST_CASE("conservation: an extra transformed vertex and extra decided triangles
                   {{"children of tessellation = taken by triangle_queue", {1, 1}},
                    {"taken by triangle_queue = by get_triangle from it", {1, 0}},
                    {"triangles cut by tessellation + finished = decided", {1, 0}},
-                   {"triangles sent round for normals = decided for normals", {1, 0}},
+                   {"triangles recirculated for normals = decided for normals", {1, 0}},
                    {"triangles in triangle_queue = taken by it", {0, 1}}});
 }
 
@@ -393,10 +393,10 @@ TEST_CASE("conservation: spilled triangles still off chip do not count as read b
     while (queue.spilled() < 6 || queue.spilled() == queue.refilled())
         sc_core::sc_start(simulation.pipeline.clock.period());
     const Equations halfway = sides_of(simulation);
-    const Sides spilled = halfway.at("triangles spilled = come back");
+    const Sides spilled = halfway.at("triangles spilled = refilled");
     CHECK(spilled == Sides{static_cast<std::int64_t>(queue.spilled()), static_cast<std::int64_t>(queue.refilled())});
     CHECK(spilled.first > spilled.second);
-    const Sides requests = halfway.at("requests to off_chip_memory = out and back");
+    const Sides requests = halfway.at("requests to off_chip_memory = spills and refills");
     CHECK(requests.second == 2 * spilled.first);
     CHECK(requests.first < requests.second);
     const Sides bytes = halfway.at("bytes read from off_chip_memory = written");
@@ -404,7 +404,7 @@ TEST_CASE("conservation: spilled triangles still off chip do not count as read b
     sc_core::sc_report_handler::set_actions(sc_core::SC_ID_NO_SC_START_ACTIVITY_, sc_core::SC_DO_NOTHING);
     run_timed(simulation);
     const Equations end = sides_of(simulation);
-    for (const char* const name : {"triangles spilled = come back", "requests to off_chip_memory = out and back",
+    for (const char* const name : {"triangles spilled = refilled", "requests to off_chip_memory = spills and refills",
                                    "bytes read from off_chip_memory = written"}) {
         INFO(name);
         CHECK(end.at(name).first == end.at(name).second);

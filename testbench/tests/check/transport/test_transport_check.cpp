@@ -34,7 +34,7 @@ void require_work_conserved(const Job& job) {
     work.write(LitTriangle{});
     const WorkResult doubled = work_result(work, simulation);
     CHECK(doubled.violations == 1);
-    CHECK_THAT(doubled.first_violation, Contains("1 triangles more were lit than were to be"));
+    CHECK_THAT(doubled.first_violation, Contains("1 more triangles were lit than expected"));
 }
 
 /// One base triangle, decided and not split, finished and lit. It faces the viewer; N and N' are zero, so that only
@@ -106,7 +106,7 @@ TEST_CASE("work check: a changed field of a triangle is detected where it change
         {"screen.y", [](Vertex& v) { ++v.screen.y; }, false},
         {"screen.w", [](Vertex& v) { ++v.screen.w; }, false},
         {"screen.in_front", [](Vertex& v) { v.screen.in_front = !v.screen.in_front; }, false}};
-    const std::string other = " as were to be, but not the same";
+    const std::string other = " as expected, but not the same ones";
     for (const Field& field : fields)
         for (std::size_t k = 0; k < 3; ++k) {
             INFO(field.name << " of vertex " << k);
@@ -141,21 +141,21 @@ TEST_CASE("work check: a changed field of a triangle is detected where it change
                   "all base triangles: as many triangles were lit" + other);
     }
     CHECK(found([](OneTriangle& w) { w.pass.triangle.base = w.finished.base = 1; }) ==
-          "base triangle 0: 1 triangles that were to be decided never were");
+          "base triangle 0: 1 triangles expected to be decided were not");
     // A triangle without a base triangle, a lost one, and a lit one that faces away.
     OneTriangle stray;
     TransportCheck check(stray.registers, {});
     check.write(stray.pass);
-    CHECK(check.result().first_violation == "no base triangle: 1 triangles more were decided than were to be");
+    CHECK(check.result().first_violation == "no base triangle: 1 more triangles were decided than expected");
     check.write(stray.finished);
     CHECK(check.result().violations == 2);  // decided, and not yet lit
     CHECK(found([](OneTriangle& w) { w.pass.split = 7; }) ==
-          "base triangle 0: 4 triangles that were to be decided never were");
+          "base triangle 0: 4 triangles expected to be decided were not");
     CHECK(found([](OneTriangle& w) {
               for (const auto turn : {&w.pass.triangle, &w.finished})
                   std::swap(turn->vertices[1].screen, turn->vertices[2].screen);
               std::swap(w.lit.corners[1].screen, w.lit.corners[2].screen);
-          }) == "all base triangles: 1 triangles more were lit than were to be");
+          }) == "all base triangles: 1 more triangles were lit than expected");
 }
 
 TEST_CASE("work is conserved: half donut, functional, culled") {

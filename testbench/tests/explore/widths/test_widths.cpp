@@ -249,7 +249,7 @@ TEST_CASE("widths: the knee is the narrowest width that, with all wider ones, me
     CHECK(relative.knee.most_flips == anything.rows[0].run.split_flips_percent() + 0.5);
     WidthRequest request{job, swept, 1, {}, {}};
     const WidthSweep none{0, {knee(100.0, 0.0)}, {}};
-    CHECK_THAT(widths_text(request, none), Contains("knee: none; not even the widest"));
+    CHECK_THAT(widths_text(request, none), Contains("knee: none; even the widest"));
     CHECK_THAT(widths_text(request, {0, {at_third}, {}}), Contains("knee: 12 bits, 10 of them fraction"));
 }
 

@@ -137,7 +137,8 @@ TEST_CASE("bad input ends in an error with file and line") {
     using namespace std::string_literals;
     const std::pair<std::string, std::string> bad_files[] = {
         {"", "no face"},
-        {"<!DOCTYPE html><html>404</html>\n", "no face (`f` line) in 1 line(s), but 1 of other words ('<!DOCTYPE'"},
+        {"<!DOCTYPE html><html>404</html>\n",
+         "no face (`f` line) in 1 line(s), but 1 with other keywords (the first is '<!DOCTYPE'"},
         {"v 0 0 0\nv 1 0\0 0\n"s, "a zero byte"},
         {"\xff\xfev\0 \0"s, "UTF-16"},
     };
@@ -191,12 +192,12 @@ TEST_CASE("repeated and turned-over triangles are dropped, two-sided sheets are 
 TEST_CASE("T-junctions, non-manifold edges and changes of winding are reported") {
     const BaseMesh junction =
         parse("v 0 0 0\nv 2 0 0\nv 1 2 0\nv 1 0 0\nv 0 -2 0\nv 2 -2 0\nf 1 2 3\nf 1 5 4\nf 4 5 6\nf 4 6 2\n");
-    CHECK_THAT(all_repairs(junction), Contains("1 border edge(s) have another vertex"));
+    CHECK_THAT(all_repairs(junction), Contains("1 border edge(s) contain another vertex"));
     const BaseMesh book = parse("v 0 0 0\nv 0 0 1\nv 1 0 0\nv -1 1 0\nv -1 -1 0\nf 1 2 3\nf 1 2 4\nf 1 2 5\n");
     CHECK_THAT(all_repairs(book), Contains("1 edge(s) belong to more than two triangles"));
     const BaseMesh twisted = parse(square + "f 1/1 2/2 3/3\nf 1/1 4/4 3/3\n");
-    CHECK_THAT(all_repairs(twisted), Contains("Across 1 edge(s) the winding changes"));
-    CHECK_THAT(all_repairs(twisted), Contains("At 2 point(s) the normals of the triangles around cancel"));
+    CHECK_THAT(all_repairs(twisted), Contains("The winding changes across 1 edge(s)"));
+    CHECK_THAT(all_repairs(twisted), Contains("At 2 point(s) the normals of the surrounding triangles cancel"));
     require_complete(twisted);
 }
 
@@ -209,7 +210,7 @@ TEST_CASE("given normals are normalised, and computed if their length is zero") 
     CHECK(mesh.vertices[2].normal.x == Approx(std::sqrt(1.0 / 3)));
     CHECK(mesh.vertices[3].normal.y == Approx(0.6));
     CHECK_THAT(all_repairs(mesh),
-               Contains("1 vertex normal(s) have no length") && Contains("3 vertex normal(s) are not"));
+               Contains("1 vertex normal(s) have zero length") && Contains("3 vertex normal(s) are not"));
     CHECK_THAT(all_repairs(parse(square + "vn 0 0 -1\nf 1/1/2 2/2/2 3/3/2\n")), Contains("against their winding"));
 }
 
@@ -259,7 +260,7 @@ TEST_CASE("a triangle without area in texture space gives perpendicular tangents
 TEST_CASE("a mesh without any area in texture space gets a projected map") {
     const BaseMesh mesh = parse(square + "f 1/1 2/1 3/1 4/1\n");
     require_complete(mesh);
-    CHECK_THAT(all_repairs(mesh), Contains("No triangle has an area in texture space: the map was laid over the "
+    CHECK_THAT(all_repairs(mesh), Contains("No triangle has an area in texture space: the map was projected onto the "
                                            "mesh's bounding box along z."));
     CHECK(mesh.vertices[2].texture == glm::dvec2(1, 1));
     CHECK(mesh.texture_scale.mean_u == 1);
@@ -366,7 +367,7 @@ TEST_CASE("outlines that cross themselves or are not planar load with a repair")
         parse("v 0 0 0\nv 1 0 1\nv 1 1 0\nv 0 1 1\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n");
     require_complete(bent);
     CHECK(bent.triangles.size() == 2);
-    CHECK_THAT(all_repairs(bent), Contains("not plane"));
+    CHECK_THAT(all_repairs(bent), Contains("not planar"));
 }
 
 TEST_CASE("files beyond a limit are refused with the limit") {
@@ -394,7 +395,7 @@ TEST_CASE("files beyond a limit are refused with the limit") {
 TEST_CASE("unknown keywords are skipped and reported") {
     const BaseMesh mesh = parse("hello\n" + square + "\x01\x02 3\nf 1/1 2/2 3/3\nsurf 0 1 0 1 1 2 3 4\n");
     CHECK_THAT(all_repairs(mesh),
-               Contains("3 line(s) begin with a word that is not read") && Contains("the first is line 1: 'hello'."));
+               Contains("3 line(s) begin with an unknown keyword") && Contains("the first is line 1: 'hello'."));
 }
 
 namespace {

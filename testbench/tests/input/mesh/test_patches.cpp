@@ -209,7 +209,7 @@ TEST_CASE("patches: a cusp gets a smooth normal, with a repair") {
         one_patch([](int i, int j) { return j < 2 ? glm::dvec3(0) : glm::dvec3(i, j, 0.1 * i * j); });
     const BaseMesh mesh = make_patch_mesh(patches, 4, 4, "p");
     require_complete(mesh);
-    CHECK_THAT(mesh.repairs.at(1), Contains("4 vertices lie on cusps"));
+    CHECK_THAT(mesh.repairs.at(1), Contains("4 vertices at cusps"));
 }
 
 TEST_CASE("patches: patches that give no mesh are refused") {
@@ -258,9 +258,9 @@ TEST_CASE("patches: hostile text ends in one message with its line") {
             {"inf\n", {"limit: p.txt:1:"}},
             {"4000000\n", {"before patch 1 of 4000000"}},
             {with_line(text, 3, "17000000"), {"limit: p.txt:3:", "16000000"}},
-            {with_line(text, 3, "4"), {"p.txt:8:", "behind the last of 4 points"}},
+            {with_line(text, 3, "4"), {"p.txt:8:", "after the last of 4 points"}},
             {with_line(text, 3, "17"), {"before point 17 of 17"}},
-            {with_line(text, 2, row + "17"), {"p.txt:2: patch 1 names point 17, but there are 16"}},
+            {with_line(text, 2, row + "17"), {"p.txt:2: patch 1 names point 17, but the file has 16"}},
             {with_line(text, 2, "1,2,3"), {"p.txt:2: patch 1 of 1", "3 number(s)"}},
             {with_line(text, 2, row + "16,1"), {"17 number(s)"}},
         },

@@ -85,7 +85,7 @@ TEST_CASE("bake: the map has its floor value where the quadric is absent or too 
 TEST_CASE("bake: a quadric without a point over the domain is refused with its line") {
     CHECK_THROWS_WITH(
         bake_heights(surface("\n[quadric]\nshape = \"sphere\"\nradius = 0.1\ncentre = [5, 0, 0]\n"), 8, 8),
-        Contains("s.toml:2: the quadric is nowhere: none of 8 x 8"));
+        Contains("s.toml:2: the quadric was not found: none of 8 x 8"));
     CHECK_THROWS_AS(bake_over_mesh(sphere(0.1, {9, 9, 9}), make_plane(1, 1, 2, 2), {}, 4, 4), InputError);
 }
 

@@ -35,7 +35,7 @@ TEST_CASE("error.txt: fewer than one sample per texel is noted beside the densit
     MeshError error;
     error.reference_density = 4;
     error.mesh_density = 1;
-    const std::string few = " (fewer than one: what lies between is not measured)";
+    const std::string few = " (fewer than one: detail between them is not measured)";
     CHECK_THAT(error_text({}, {}, error), Contains("reference 0, 4 per texel and axis; mesh 0, 1 per texel\n"));
     error.mesh_density = 0.125;
     CHECK_THAT(error_text({}, {}, error),

@@ -159,7 +159,7 @@ TEST_CASE("bottleneck: the bound is that of the other units, and the unit that w
     less.set(0, State::blocked, &m.pipeline.lighting);
     less.finish(299);
     CHECK(bottleneck_text(m.pipeline, cycles) ==
-          "lighting: 90.0 % of its throughput is used; pass_or_tessellate is held up by it in "
+          "lighting: 90.0 % of its throughput is used; pass_or_tessellate is delayed by it in "
           "30.0 % of all cycles; without it at most 2.0 times faster, bounded by calculate_new_p, at 50.0 %");
 }
 
@@ -173,7 +173,7 @@ TEST_CASE("bottleneck: units that tie bind together") {
     get.finish(700);
     CHECK(bottleneck_text(m.pipeline, cycles) ==
           "calculate_new_p and transform, which tie: 100.0 % of their throughput is used; "
-          "get_triangle is held up by calculate_new_p in 70.0 % of all cycles; without them at most 10.0 "
+          "get_triangle is delayed by calculate_new_p in 70.0 % of all cycles; without them at most 10.0 "
           "times faster, bounded by "
           "lighting, at 10.0 %");
 }
@@ -246,7 +246,7 @@ TEST_CASE("bottleneck: of five units that tie one is named") {
 
 TEST_CASE("bottleneck: an idle machine has none") {
     Machine m;
-    CHECK(bottleneck_text(m.pipeline, cycles) == "nothing was done");
+    CHECK(bottleneck_text(m.pipeline, cycles) == "none: no unit was busy");
     CHECK(find_bottleneck(m.pipeline, cycles).bound() == 0);
 }
 
