@@ -54,7 +54,7 @@ def measure(study):
     section.charts.append(cycles_chart(cycles))
     section.tables.append(Table(
         "off_chip", "Per finished triangle, with 64 byte lines, 4 ways, up to 96 lines and 96 families under way",
-        [("job", ""), ("off-chip memory", "bytes a cycle"), ("cycles", ""), ("displacement map hits", "%"),
+        [("job", ""), ("off-chip memory", "bytes per cycle"), ("cycles", ""), ("displacement map hits", "%"),
          ("normal map hits", "%"), ("Summed Height Table hits", "%"), ("fetched", "bytes"), ("finished mesh", "bytes"),
          ("tables", "MB"), ("bottleneck", "")], rows))
     return section

@@ -78,7 +78,7 @@ TEST_CASE("sweep: each design is a row, the front is marked, a failed run is a r
     INFO(table);
     REQUIRE(rows.size() == 10);
     CHECK_THAT(rows[0],
-               Contains("run,scene,timing.summed_height_table_ports [entries a cycle],queue,timing.cycles [cycle],"
+               Contains("run,scene,timing.summed_height_table_ports [entries per cycle],queue,timing.cycles [cycle],"
                         "timing.bottleneck,area [bit],timing.cycles_per_triangle [cycle/triangle],front,status"));
     CHECK_THAT(rows[1], Contains("0,half_donut,1,unbounded,") && Contains(",ok,"));
     CHECK_THAT(rows[2], Contains(",failed,") && Contains("exit code 3: "));
