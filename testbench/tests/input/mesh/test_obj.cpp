@@ -182,7 +182,7 @@ TEST_CASE("repeated and turned-over triangles are dropped, two-sided sheets are 
     CHECK_THAT(all_repairs(repeated), Contains("repeat an earlier one") && Contains("line 11"));
     const BaseMesh turned = parse(square + "f 1/1 2/2 3/3\nf 3/3 2/2 1/1\n");
     CHECK(turned.triangles.size() == 1);
-    CHECK_THAT(all_repairs(turned), Contains("turned over"));
+    CHECK_THAT(all_repairs(turned), Contains("opposite winding"));
     CHECK(turned.vertices[0].normal == glm::dvec3(0, 0, 1));
     const BaseMesh sheet = parse(square + "vn 0 0 -1\nf 1/1/1 2/2/1 3/3/1\nf 3/3/2 2/2/2 1/1/2\n");
     CHECK(sheet.triangles.size() == 2);

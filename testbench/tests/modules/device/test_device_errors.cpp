@@ -422,5 +422,5 @@ TEST_CASE("an invalid device is refused during construction") {
     CHECK_THAT(refused(design), Catch::Contains("queue"));
     design = design_of(setup);
     design.finished_triangles = 0;
-    CHECK_THAT(refused(design), Catch::Contains("at least one"));
+    CHECK_THAT(refused(design), Catch::Contains("at least 1"));
 }
