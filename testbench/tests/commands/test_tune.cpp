@@ -161,7 +161,8 @@ TEST_CASE("tune refuses wrong usage and unreachable goals, and writes nothing") 
     CHECK_THAT(tune({}), Contains("--triangles") && Contains("--error") && Contains("tune --help"));
     CHECK_THAT(tune({"--triangles", "5", "--error", "1"}), Contains("either"));
     CHECK_THAT(tune({"--triangles", "900", "--tests", "summed_height,curvature"}), Contains("one of them"));
-    CHECK_THAT(tune({"--triangles", "900", "--tests", "mipmap,curvature"}), Contains("curvature and mipmap exclude each other"));
+    CHECK_THAT(tune({"--triangles", "900", "--tests", "mipmap,curvature"}),
+               Contains("curvature and mipmap exclude each other"));
     CHECK_THAT(tune({"--triangles", "900", "--tests", "rank", "--grid", "4x4"}), Contains("ranks need a lattice"));
     CHECK_THAT(tune({"--triangles", "900", "--set", "hardware.height_test=rank", "--set",
                      "hardware.test_order=cheap_first", "--set", "tests.rank_view=per_point"}),
