@@ -32,6 +32,7 @@ std::uint64_t entry_sizes(const Formats& f) {
 std::vector<DeviceRegister> control_registers(const Formats& f, const LargestMap& largest) {
     constexpr RegisterAccess ro = RegisterAccess::read_only, rw = RegisterAccess::read_write,
                              w1c = RegisterAccess::write_one_to_clear;
+    const char* const table = "address of the table in bus memory";
     const char* const format = "bits 7 to 0: width; bits 15 to 8: fraction bits";
     // name, offset, bits, words, signed, reset value, access, while busy, always present, meaning
     return {
@@ -46,12 +47,9 @@ std::vector<DeviceRegister> control_registers(const Formats& f, const LargestMap
         {"error_address", offset::error_address, 64, 2, false, 0, ro, false, "",
          "address of the error: a bus address or a register's offset"},
         {"fetch", offset::fetch, 3, 1, false, 7, rw, false, "", "tables that a frame fetches before it begins"},
-        {"displacement_map.address", offset::displacement_map_address, 64, 2, false, 0, rw, false, "",
-         "address of the table in bus memory"},
-        {"normal_map.address", offset::normal_map_address, 64, 2, false, 0, rw, false, "",
-         "address of the table in bus memory"},
-        {"summed_height_table.address", offset::summed_height_table_address, 64, 2, false, 0, rw, false, "",
-         "address of the table in bus memory"},
+        {"displacement_map.address", offset::displacement_map_address, 64, 2, false, 0, rw, false, "", table},
+        {"normal_map.address", offset::normal_map_address, 64, 2, false, 0, rw, false, "", table},
+        {"summed_height_table.address", offset::summed_height_table_address, 64, 2, false, 0, rw, false, "", table},
         {"triangles.address", offset::triangles_address, 64, 2, false, 0, rw, false, "",
          "address of the base triangles' records in bus memory"},
         {"triangles.count", offset::triangles_count, 32, 1, false, 0, rw, false, "", "number of base triangles"},

@@ -11,6 +11,7 @@
 #include "testbench/common/atomic_file.h"
 #include "testbench/common/error.h"
 #include "testbench/common/grouped_digits.h"
+#include "testbench/job/job_choices.h"
 #include "testbench/prove/random_machines/case_process.h"
 
 // Runs random cases, seed by seed, in both modes, each run in a child process. Every run must end, satisfy the
@@ -46,12 +47,11 @@ void print_totals(std::uint64_t first, std::uint64_t count, std::uint64_t failed
 
 /// Writes the case as files, and its failure.
 void leave_failure(const RandomCase& random_case, Mode mode, const std::string& failure, const Order& order) {
-    const std::string mode_name = mode == Mode::timed ? "timed" : "functional";
     const std::filesystem::path folder =
-        std::filesystem::path(order.failures) / fmt::format("seed_{}_{}", random_case.seed, mode_name);
+        std::filesystem::path(order.failures) / fmt::format("seed_{}_{}", random_case.seed, name_of(mode));
     random_case.write(folder, mode);
     write_file(folder / "failure.txt", failure + "\n");
-    fmt::print("seed {}, {}: {}\n{}\n  in {}\n", random_case.seed, mode_name, random_case.summary(), failure,
+    fmt::print("seed {}, {}: {}\n{}\n  in {}\n", random_case.seed, name_of(mode), random_case.summary(), failure,
                folder.string());
     std::fflush(stdout);
 }
