@@ -13,6 +13,13 @@ void add_fields(Counts& sum, const Counts& counts, Fields... fields) {
     ((sum.*fields += counts.*fields), ...);
 }
 
+/// The same for a struct that consists of these fields only.
+template <class Counts, class... Fields>
+void add_all_fields(Counts& sum, const Counts& counts, Fields... fields) {
+    static_assert(sizeof(Counts) == sizeof...(fields) * sizeof(std::uint64_t), "list every field");
+    add_fields(sum, counts, fields...);
+}
+
 /// The counts of a run, totals over all machines.
 struct Totals {
     DecidingUnit::Counts counts;

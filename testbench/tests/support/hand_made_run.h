@@ -18,10 +18,11 @@ namespace tessera::testing {
 ///   vertices calculated 33, discarded 33 - 17; normals 3 * 5; children 2 + 2 * 3 + 4 * 4 = 24, all waiting
 class HandMadeRun {
   public:
-    MachineSetup setup = make();
+    MachineSetup setup;
     Simulation simulation{setup, 1000};
 
-    HandMadeRun() {
+    explicit HandMadeRun(datapath::Triangulation triangulation = datapath::Triangulation::shorter)
+        : setup(make(triangulation)) {
         sc_core::sc_start(sc_core::SC_ZERO_TIME);
         const unsigned n = datapath::normal_bit, s = datapath::summed_height_bit, h = datapath::highlight_bit;
         const unsigned view = datapath::view_bit, tex_coord = datapath::tex_coord_bit,
@@ -41,7 +42,7 @@ class HandMadeRun {
     }
 
   private:
-    static MachineSetup make() {
+    static MachineSetup make(datapath::Triangulation triangulation) {
         Job job;
         job.mode = Mode::functional;
         job.map.width = job.map.height = 8;
@@ -49,6 +50,7 @@ class HandMadeRun {
         job.hardware.culling = Culling::back;
         MachineSetup setup = setup_of(job);
         setup.base_triangles.clear();
+        setup.registers.triangulation = triangulation;
         return setup;
     }
     /// A triangle with all values known, its normals in screen space only if `with_normals`.

@@ -182,6 +182,16 @@ TEST_CASE("statistics: each counter of the machine is in its own figure") {
         CHECK(name.rfind("timing", 0) == std::string::npos);  // no cycles are claimed
 }
 
+// 4 passes in which three edges request a split, and 2 in which two do: 4 * 2 + 2 edges are tested again.
+TEST_CASE("statistics: edges tested again, since an edge of greater rank was split") {
+    HandMadeRun run(datapath::Triangulation::greatest_rank);
+    const Figures f = figures_of(run.simulation);
+    f.require("run", {{"edges_tested", 33}, {"edges_split", 7}});
+    f.require("pass_or_tessellate", {{"passes", 11}, {"edges_uncut", 10}});
+    f.require_all("tessellation",
+                  {{"made_into_2", 7}, {"made_into_3", 0}, {"made_into_4", 0}, {"passed_unchanged", 0}});
+}
+
 TEST_CASE("statistics: emitted triangles record the tests that stopped them") {
     HandMadeRun run;
     std::map<unsigned, int> stopped;
