@@ -259,6 +259,14 @@ std::vector<Conservation> conservation(const Simulation& simulation) {
     return list.take();
 }
 
+void observe(Simulation& simulation, TransportCheck& check) {
+    simulation.observe_decisions(check);
+    for (const auto& machine : simulation.machines) {
+        machine->pipeline.pass_or_tessellate.finished.bind(check);
+        machine->rasteriser.taken.bind(check);
+    }
+}
+
 WorkResult work_result(const TransportCheck& check, const Simulation& simulation) {
     WorkResult result = check.result();
     for (const Conservation& equation : conservation(simulation)) {

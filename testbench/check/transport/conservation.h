@@ -30,6 +30,9 @@ std::uint64_t sum_over_tests(const Pipeline& pipeline, Figure figure) {
     return sum;
 }
 
+/// Sends the check what it needs from a simulation that has not begun.
+void observe(Simulation& simulation, TransportCheck& check);
+
 /// The combined result of the transport check and these equations.
 WorkResult work_result(const TransportCheck& check, const Simulation& simulation);
 

@@ -3,6 +3,7 @@
 
 #include "testbench/check/conformance/scoreboard.h"
 #include "testbench/check/mesh/invariants.h"
+#include "testbench/check/transport/conservation.h"
 #include "testbench/machine/totals.h"
 #include "testbench/tests/support/bare_mesh.h"
 #include "testbench/tests/support/timed_checks.h"
@@ -10,7 +11,7 @@
 namespace tessera::testing {
 
 /// A job that is set up, simulated in its mode to its end, and checked: every decision against the golden model, the
-/// mesh for cracks and against the bare recursion, and no item lost. Tests may inspect its figures.
+/// mesh for cracks and against the bare recursion, and no item lost or changed. Tests may inspect its figures.
 struct CheckedRun {
     explicit CheckedRun(const Job& job) : CheckedRun(setup_of(job)) {}
     explicit CheckedRun(MachineSetup its_setup, UnitFactory* units = nullptr)
@@ -18,6 +19,7 @@ struct CheckedRun {
         const GoldenInputs golden(setup);
         Scoreboard scoreboard(setup.registers, golden);
         simulation.observe_decisions(scoreboard);
+        observe(simulation, transport);
         run_to_the_end(simulation);
         for (const auto& machine : simulation.machines) {
             machine->pipeline.pass_or_tessellate.decided.unbind(scoreboard);
@@ -31,6 +33,9 @@ struct CheckedRun {
         INFO(conformance.first_mismatch);
         CHECK(conformance.mismatches == 0);
         CHECK(conformance.edges == counts.edges_tested);
+        const WorkResult work = work_result(transport, simulation);
+        INFO(work.first_violation);
+        CHECK(work.passed());
         invariants = check_invariants(mesh, setup);
         INFO(invariants.first_violation);
         CHECK(invariants.passed());
@@ -50,6 +55,7 @@ struct CheckedRun {
     }
 
     const MachineSetup setup;
+    TransportCheck transport{setup.registers, setup.base_triangles};
     Simulation simulation;
     const Pipeline& pipeline = simulation.pipeline;
     const EmittedMesh& mesh = simulation.monitor.mesh;

@@ -416,9 +416,7 @@ TEST_CASE("work check: an equation that does not hold is a violation, named with
     const MachineSetup setup = two_triangles_split_once();
     Simulation simulation(setup, 1000);
     TransportCheck work(setup.registers, setup.base_triangles);
-    simulation.pipeline.pass_or_tessellate.decided.bind(work);
-    simulation.pipeline.pass_or_tessellate.finished.bind(work);
-    simulation.rasteriser.taken.bind(work);
+    observe(simulation, work);
     run_timed(simulation);
     const WorkResult sound = work_result(work, simulation);
     CHECK(sound.passed());

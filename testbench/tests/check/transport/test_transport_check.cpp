@@ -20,9 +20,7 @@ void require_work_conserved(const Job& job) {
     const MachineSetup setup = setup_of(job);
     Simulation simulation(setup, 1'000'000, 1'000'000);
     TransportCheck work(setup.registers, setup.base_triangles);
-    simulation.pipeline.pass_or_tessellate.decided.bind(work);
-    simulation.pipeline.pass_or_tessellate.finished.bind(work);
-    simulation.rasteriser.taken.bind(work);
+    observe(simulation, work);
     REQUIRE(simulation.run().empty());
     const WorkResult result = work_result(work, simulation);
     INFO(result.first_violation);

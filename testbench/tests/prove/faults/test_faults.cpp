@@ -76,9 +76,7 @@ Outcome run_here(Mode mode, const std::optional<Fault>& fault) {
     Scoreboard scoreboard(setup.registers, golden);
     TransportCheck work(setup.registers, setup.base_triangles);
     simulation.pipeline.pass_or_tessellate.decided.bind(scoreboard);
-    simulation.pipeline.pass_or_tessellate.decided.bind(work);
-    simulation.pipeline.pass_or_tessellate.finished.bind(work);
-    simulation.rasteriser.taken.bind(work);
+    observe(simulation, work);
 
     Outcome outcome;
     if (fault && !units->placed())
