@@ -123,9 +123,7 @@ std::string finish_traces(Traces& traces, const Command& command, const std::fil
 const char* verdict(const Checks& checks) {
     if (!checks.passed())
         return "CHECKS FAILED, see conformance.txt";
-    const bool any =
-        checks.setup || checks.conformance || checks.end_to_end || checks.invariants || checks.work || checks.reads;
-    return any ? "all checks passed" : "nothing was checked";
+    return checks.any() ? "all checks passed" : "nothing was checked";
 }
 
 /// Verdict and messages of a run.
@@ -166,11 +164,7 @@ Ending run_once(const Job& asked, const Command& command, const std::string& nam
     std::unique_ptr<TransportCheck> work;
     if (job.check.work) {
         work = std::make_unique<TransportCheck>(setup.registers, setup.base_triangles);
-        simulation.observe_decisions(*work);
-        for (const auto& machine : simulation.machines) {
-            machine->pipeline.pass_or_tessellate.finished.bind(*work);
-            machine->rasteriser.taken.bind(*work);
-        }
+        observe(simulation, *work);
     }
     TexelBorders borders(setup.registers.formats);
     for (const auto& machine : simulation.machines)

@@ -29,6 +29,7 @@ struct Checks {
                (!end_to_end || end_to_end->passed()) && (!invariants || invariants->passed()) &&
                (!work || work->passed()) && (!reads || reads->passed());
     }
+    bool any() const { return setup || conformance || end_to_end || invariants || work || reads; }
 };
 
 /// conformance.txt.
