@@ -77,7 +77,8 @@ std::string end_to_end_text(const EndToEndResult& result) {
         "thresholds.\nOnly map values (to displacement codes) and texture coordinates are rounded, as in the "
         "hardware. Allowed: {} % more or\nfewer triangles; {} % of the points farther from the other "
         "surface "
-        "than rounding moves them, {:.3g} model units;\nan RMS distance of {:.6g} model units.\n\n"
+        "than rounding moves them, {:.3g} model units;\nan RMS distance of {:.6g} model units: the same rounding, "
+        "and the range of displacements times the root of the\nshare of farther points that was measured.\n\n"
         "  triangles: hardware {}, golden {}\n",
         verdict(result.passed()), result.allowed.triangles, result.allowed_farther(), result.allowed.rounding,
         result.allowed_rms_model(), result.hardware_triangles,

@@ -130,7 +130,8 @@ void area_figures(std::vector<Figure>& all, const Simulation& simulation) {
         };
         part("_multipliers", unit.multipliers, "multiplier", "that give a result every initiation interval");
         part("_register_bits", unit.register_bits, "bit", "input buffers, pipeline registers, state");
-        part("_memory_bits", unit.memory_bits, "bit", "a table, or the triangles that waited on chip");
+        part("_memory_bits", unit.memory_bits, "bit",
+             "a table; the queue's capacity or, if unbounded, the most triangles that waited at a time");
         part("_ports", unit.ports, "port", "entries per cycle, all banks together");
     };
     for (const UnitArea& unit : units)

@@ -32,11 +32,12 @@ const Activity::Share* largest_share(const Unit& unit, State state) {
     return largest;
 }
 
-std::string whom(const Unit& unit) {
+/// The causes of the states whose share of the cycles is not printed as 0.00.
+std::string whom(const Unit& unit, std::uint64_t cycles) {
     std::string text;
     for (const State state : {State::blocked, State::waiting_for_memory, State::starved}) {
         const Activity::Share* share = largest_share(unit, state);
-        if (share == nullptr || share->cycles == 0)
+        if (share == nullptr || share->cycles == 0 || state_percent(unit, state, cycles) < 0.005)
             continue;
         text += fmt::format("{}{} {}", text.empty() ? "" : ", ",
                             state == State::blocked              ? "blocked by"
@@ -195,7 +196,7 @@ std::string unit_line(const Unit& unit, std::uint64_t cycles) {
                     state_percent(unit, State::waiting_for_memory, cycles), state_percent(unit, State::blocked, cycles),
                     state_percent(unit, State::starved, cycles), 100 * utilisation(unit, cycles),
                     1000 * ratio(activity.items_in(), cycles), ratio(activity.item_cycles(), cycles),
-                    activity.high_water_mark(), whom(unit)));
+                    activity.high_water_mark(), whom(unit, cycles)));
 }
 
 std::string queue_line(const Unit& unit, std::uint64_t cycles) {
@@ -239,11 +240,12 @@ std::string timing_text(const Simulation& simulation) {
                "  busy     working on an item with all its inputs; in a memory: answering a request\n"
                "  memory   table entries were requested and have not arrived\n"
                "  starved  nothing to work on, or the other branch's results have not arrived\n"
-               "utilisation: items times initiation interval (in a memory: port slots taken; off chip: cycles of the "
-               "channel,\nwhich caches use, too), in per cent of all cycles; 100 is the unit's maximum. items: taken; "
-               "in a memory,\nrequests. items/kcyc: in 1000 cycles. occup.: items in the unit, on average; most: at a "
-               "time. cause: the unit\nthat delayed it longest in each state. Queues and joins do no work: they have a rate and a "
-               "level.\n\n",
+               "utilisation: items times initiation interval, in per cent of all cycles; 100 is the unit's maximum. "
+               "get_triangle and\ntessellation hold one triangle at a time, for its latency and the intervals of its further "
+               "parts. Memories: port slots\nof the busiest bank, or cycles in which a request waited, if more; off chip: "
+               "cycles of the channel, which caches use,\ntoo. items: taken; in a memory, requests. items/kcyc: in 1000 "
+               "cycles. occup.: items in the unit, on average; most:\nat a time. cause: the unit that delayed it longest in "
+               "each state. Queues and joins do no work: they have a rate and\na level.\n\n",
                cycles) +
            tables + "bottleneck: " + bottleneck_text(simulation.last_machine().pipeline, cycles) + "\n";
 }
