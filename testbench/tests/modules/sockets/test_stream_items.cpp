@@ -98,9 +98,9 @@ void check_round_trips(const datapath::Formats& formats, int tag_bits, Random& r
     }
 }
 
-/// The fields: name, number of equal ones, and meaning.
+/// The fields: name with its components, number of equal ones, and meaning.
 struct Table {
-    std::string text;
+    std::string text, components;
     datapath::Field last{};
     int alike = 0;
 
@@ -111,6 +111,8 @@ struct Table {
             finish();
         last = field;
         ++alike;
+        if (*field.component != 0)
+            components += (components.empty() ? " (" : ", ") + std::string(field.component);
         return value;
     }
     std::uint32_t annotation(const char*, std::uint32_t value) const { return value; }
@@ -118,10 +120,11 @@ struct Table {
     /// The first of three equal vertices or edges represents all.
     void finish() {
         if (alike > 0 && last.index <= 0)
-            text += "| " + std::string(last.name) + (last.index < 0 ? "" : " of each") + " | " +
-                    (alike > 1 ? std::to_string(alike) + " x " : "") + std::to_string(last.bits) +
-                    (last.is_signed ? " signed" : "") + " | " + last.meaning + " |\n";
+            text += "| " + std::string(last.name) + (components.empty() ? "" : components + ")") +
+                    (last.index < 0 ? "" : " of each") + " | " + (alike > 1 ? std::to_string(alike) + " x " : "") +
+                    std::to_string(last.bits) + (last.is_signed ? " signed" : "") + " | " + last.meaning + " |\n";
         alike = 0;
+        components.clear();
     }
 };
 
