@@ -56,7 +56,7 @@ def count(root, folder):
         sys.exit(f"scripts/check coverage: no counts in {folder}/counts; run scripts/check coverage without --report-only")
     subprocess.run(["llvm-profdata", "merge", "--sparse", "-o", merged, *counts], check=True)
     programs = sorted(path for path in (folder / "testbench").rglob("*")
-                      if path.is_file() and path.parent.name in ("tests", "program")
+                      if path.is_file() and path.parent.name in ("tests", "commands")
                       and path.stat().st_mode & 0o111 and path.suffix == "")
     objects = [str(programs[0])] + [f"--object={path}" for path in programs[1:]]
     files = {}
