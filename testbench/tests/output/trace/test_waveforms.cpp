@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cctype>
+#include <functional>
 #include <map>
 #include <regex>
 #include <set>
@@ -218,5 +219,52 @@ TEST_CASE("scripts/waves opens a run in a view, from the folder of the filters")
         INFO(refused.text());
         CHECK(refused.exit_code == 2);
         CHECK_THAT(refused.err, Contains(words));
+    }
+}
+
+TEST_CASE("waveforms show what the tests in place of the Summed Height Test compare") {
+    using Value = std::function<std::int64_t(const char* signal)>;
+    struct Row {
+        std::string test;
+        Arguments settings;
+        const char* shown;
+        std::function<bool(const Value&)> splits;
+    };
+    const Arguments lattice{"hardware.triangulation=greatest_rank", "mesh.source=lattice", "mesh.spacing=16",
+                            "tests.normal=false"};
+    const std::vector<Row> rows{
+        {"curvature", {}, "measure", [](const Value& v) { return v("measure") > v("threshold"); }},
+        {"mipmap", {}, "difference", [](const Value& v) { return v("difference") > v("threshold"); }},
+        {"rank",
+         lattice + Arguments{"tests.view=false", "tests.rank_threshold=0.05", "formats.bound_bits=8",
+                             "tests.bound_threshold=0.02"},
+         "rank", [](const Value& v) { return v("rank") > v("rank_threshold") || v("bound") > v("bound_threshold"); }},
+        {"rank",
+         lattice + Arguments{"hardware.design=modern", "tests.rank_view=per_pixel", "tests.rank_threshold=20",
+                             "formats.rank_bits=10"},
+         "rank", [](const Value& v) { return v("rank") != 0 && (v("rank") << 6) > v("rank_threshold") + v("level"); }},
+    };
+    const TestFolder here;
+    for (const Row& row : rows) {
+        succeed(Arguments{"run", "--vcd", "--trace", "0:20000", "--trace-units", row.test + "_test"} +
+                    set(Arguments{"hardware.height_test=" + row.test, "output.folder=out", "output.picture=false"} +
+                        row.settings),
+                here.path());
+        const VcdFile vcd(here.path() / "out/trace.vcd");
+        const std::string unit = "tessera.tessellation_tests_0." + row.test + "_test.";
+        std::size_t wrong = 0;
+        std::set<bool> decisions;
+        for (const auto& [time, value] : vcd[unit + row.shown].changes) {
+            const bool splits = row.splits([&, at = time](const char* signal) {
+                const VcdFile::Signal& its = vcd[unit + signal];
+                const unsigned above = std::string(signal) == "rank_threshold" ? 64 - its.bits : 0;  // signed
+                return static_cast<std::int64_t>(its.at(at) << above) >> above;
+            });
+            decisions.insert(splits);
+            wrong += splits != (vcd[unit + "out.summed_height"].at(time) == 1);
+        }
+        INFO(row.test << ", " << row.settings.size() << " settings");
+        CHECK(wrong == 0);
+        CHECK(decisions.size() == 2);
     }
 }
