@@ -183,7 +183,7 @@ std::string FamilySequenceTests::describe_contents() const {
     for (const Normal& normal : normals_)
         count(normal.in_test.size(), "edge", " in the Normal Test");
     count(for_height_.size(), "edge", " for the Summed Height Test");
-    count(in_height_.size(), "edge", " in it");
+    count(in_height_.size(), "edge", " in the Summed Height Test");
     count(leaving_.size(), "decided edge", "");
     for (std::size_t lane = 0; lane < lanes_.size(); ++lane) {
         count(to_pass_or_tessellate[lane].free() ? 0 : 1, "edge", " that Pass or Tessellate does not accept");
