@@ -209,3 +209,17 @@ const CaseTable rows(
     });
 
 }  // namespace
+
+TEST_CASE("families, Sequence Tests: results of different edges are an error") {
+    Bench bench(timing_of(32, 4, {}));
+    bench.lane[1]->view_results.items[0].tag.part = first_edge_part;
+    CHECK_THROWS_WITH(sc_core::sc_start(), Catch::Contains("the tests' results belong to different edges"));
+}
+
+TEST_CASE("families, Sequence Tests: an answer without a request is an error") {
+    Bench bench(timing_of(32, 4, {}));
+    sc_core::sc_start(sc_core::SC_ZERO_TIME);
+    NormalResult result;
+    bench.second_normal_test.output.send(result);
+    CHECK_THROWS_WITH(sc_core::sc_start(), Catch::Contains("a result for an edge that was not sent to the test"));
+}

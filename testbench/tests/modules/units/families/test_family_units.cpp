@@ -19,6 +19,7 @@
 
 using namespace tessera;
 using namespace tessera::testing;
+using Catch::Contains;
 
 namespace {
 
@@ -364,3 +365,40 @@ const CaseTable pass_or_tessellate("families, Pass or Tessellate: each child onc
                                    check_pass_or_tessellate);
 
 }  // namespace
+
+// Parts that no correct machine sends, in functional mode; family 2 has new edges and two inserted vertices.
+TEST_CASE("families, Tessellation: a part of an absent triangle, or one that comes twice, is an error") {
+    TessellationBench bench(*designs.begin());
+    sc_core::sc_start(sc_core::SC_ZERO_TIME);
+    const auto bring = [&](ScreenPoint point) {
+        sc_core::sc_time delay;
+        bench.from_transform.out.transport(point, delay);
+    };
+    const ScreenPoint point = points(2).front();
+    CHECK_THAT(error_of([&] { bring(point); }), Contains("for a triangle that has not arrived"));
+    TakenTriangle triangle = taken(2);
+    sc_core::sc_time delay;
+    bench.from_get_triangle.out.transport(triangle, delay);
+    bring(point);
+    CHECK_THAT(error_of([&] { bring(point); }), Contains("a part arrived twice"));
+    CHECK(bench.families->items.empty());
+}
+
+TEST_CASE("families, Pass or Tessellate: an edge of an absent family, or one that comes twice, is an error") {
+    PassOrTessellateBench bench(*designs.begin());
+    sc_core::sc_start(sc_core::SC_ZERO_TIME);
+    TestedEdge edge;
+    edge.tag = {100, first_edge_part, {}};
+    const auto bring = [&] {
+        sc_core::sc_time delay;
+        bench.lanes[0]->out.transport(edge, delay);
+    };
+    CHECK_THAT(error_of(bring), Contains("for a family that has not arrived"));
+    edge.tag.triangle = 2;
+    Family family = family_of(2);
+    sc_core::sc_time delay;
+    bench.from_tessellation.out.transport(family, delay);
+    bring();
+    CHECK_THAT(error_of(bring), Contains("an edge of a family arrived twice"));
+    CHECK_FALSE(bench.unit.joined());
+}
