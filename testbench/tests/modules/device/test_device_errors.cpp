@@ -38,6 +38,26 @@ const std::vector<Refusal> refusals{
     {TESSERA_REGISTER_SUMMED_HEIGHT_TABLE_ADDRESS, -8, DeviceError::bad_address},
 };
 
+void expect_refused(Bench& bench, tessera_driver& driver, const MachineSetup& setup, const FramePlaces& places,
+                    const std::vector<Refusal>& rows) {
+    for (const Refusal& refusal : rows) {
+        INFO(tessera_register_name(refusal.number) << " = " << refusal.value);
+        set_frame(driver, setup, places);
+        REQUIRE(tessera_set(&driver, refusal.number, refusal.value) == TESSERA_OK);
+        CHECK(tessera_start(&driver) == static_cast<int>(refusal.error));
+        std::uint64_t address = 0;
+        std::uint32_t status = 0;
+        CHECK(tessera_last_error(&driver, &address) == static_cast<int>(refusal.error));
+        CHECK(number_of(static_cast<std::uint32_t>(address)) == refusal.number);
+        REQUIRE(tessera_status(&driver, &status) == TESSERA_OK);
+        CHECK(status == TESSERA_STATUS_ERROR);
+        std::int64_t value = 0;
+        REQUIRE(tessera_get(&driver, refusal.number, &value) == TESSERA_OK);
+        CHECK(value == refusal.value);
+    }
+    CHECK((bench.memory.reads == 0 && bench.memory.writes == 0));
+}
+
 const CaseTable<BenchMode> refused_frames{
     "a frame with a wrong register is refused, changes nothing, and the next frame is correct: ",
     {{"functional", false}, {"timed", true}},
@@ -49,28 +69,40 @@ const CaseTable<BenchMode> refused_frames{
         LitKeys found;
         bench.cpu.program = [&](Processor&) {
             tessera_driver& driver = bench.init();
-            for (const Refusal& refusal : refusals) {
-                INFO(tessera_register_name(refusal.number) << " = " << refusal.value);
-                set_frame(driver, setup, places);
-                REQUIRE(tessera_set(&driver, refusal.number, refusal.value) == TESSERA_OK);
-                CHECK(tessera_start(&driver) == static_cast<int>(refusal.error));
-                std::uint64_t address = 0;
-                std::uint32_t status = 0;
-                CHECK(tessera_last_error(&driver, &address) == static_cast<int>(refusal.error));
-                CHECK(number_of(static_cast<std::uint32_t>(address)) == refusal.number);
-                REQUIRE(tessera_status(&driver, &status) == TESSERA_OK);
-                CHECK(status == TESSERA_STATUS_ERROR);
-                std::int64_t value = 0;
-                REQUIRE(tessera_get(&driver, refusal.number, &value) == TESSERA_OK);
-                CHECK(value == refusal.value);
-            }
-            CHECK((bench.memory.reads == 0 && bench.memory.writes == 0));
+            expect_refused(bench, driver, setup, places, refusals);
             // with the unit `area` the same threshold is too large, and the greatest is not
             set_frame(driver, setup, places);
             REQUIRE(tessera_set(&driver, TESSERA_REGISTER_TESTS_SUMMED_HEIGHT_UNIT, 1) == 0);
             REQUIRE(tessera_set(&driver, TESSERA_REGISTER_TESTS_SUMMED_HEIGHT_THRESHOLD, (1 << 18) + 1) == 0);
             CHECK(tessera_start(&driver) == static_cast<int>(DeviceError::bad_value));
             set_machine(driver, setup.registers);
+            found = run_frame(driver);
+        };
+        bench.run();
+        expect_same(found, reference.keys);
+    }};
+
+/// The texels that the Curvature Table covers.
+const std::vector<Refusal> curvature_refusals{
+    {TESSERA_REGISTER_CURVATURE_TABLE_COLUMNS, 0, DeviceError::bad_map_size},
+    {TESSERA_REGISTER_CURVATURE_TABLE_COLUMNS, 65, DeviceError::bad_map_size},
+    {TESSERA_REGISTER_CURVATURE_TABLE_ROWS, 0, DeviceError::bad_map_size},
+    {TESSERA_REGISTER_CURVATURE_TABLE_ROWS, 4096, DeviceError::bad_map_size},
+};
+
+const CaseTable<BenchMode> refused_tables{
+    "a frame with a wrong size of the Curvature Table is refused, and the next frame is correct: ",
+    {{"functional", false}, {"timed", true}},
+    [](const BenchMode& mode) {
+        const MachineSetup setup = setup_for(mode, "hardware.height_test=curvature tests.curvature_threshold=0.02");
+        Reference reference("reference", setup);
+        Bench bench({formats_of(setup)}, design_of(setup));
+        const FramePlaces places = bench.place(setup, 50);
+        LitKeys found;
+        bench.cpu.program = [&](Processor&) {
+            tessera_driver& driver = bench.init();
+            expect_refused(bench, driver, setup, places, curvature_refusals);
+            set_frame(driver, setup, places);
             found = run_frame(driver);
         };
         bench.run();
