@@ -57,6 +57,9 @@ TEST_CASE("map: unusable input is refused") {
     CHECK_THROWS_AS(Map(1, 1, clamp, clamp, {-1}), std::invalid_argument);
     CHECK_THROWS_AS(Map(1, 1, clamp, clamp, {std::nan("")}), std::invalid_argument);
     CHECK_THROWS_AS(Map(1, 1, clamp, clamp, {0x1p52}), std::invalid_argument);
+    const std::vector<double> highest(1025 * 1024, 0x1p32 - 1);  // their sum is above 2^52, that of 1024 rows is not
+    CHECK_THROWS_AS(Map(1025, 1024, clamp, clamp, highest), std::invalid_argument);
+    CHECK_NOTHROW(Map(1024, 1024, clamp, clamp, {highest.begin(), highest.begin() + 1024 * 1024}));
     Map map(1, 2, clamp, clamp, {1, 2});
     CHECK_THROWS_AS(map.set_normals({{0, 0, 1}}), std::invalid_argument);
 }

@@ -421,6 +421,7 @@ TEST_CASE("debug transport reads all registers, writes plain ones, and starts no
         CHECK(debug(writing, offset::interrupt, word) == 0);
         CHECK(debug(writing, offset::ring_address, two) == 8);
         CHECK(debug(reading, offset::ring_address, odd) == 4);
+        CHECK(debug(tlm::TLM_IGNORE_COMMAND, offset::ring_address, word) == 0);
         CHECK(debug(reading, 0x1c, word) == 0);
         CHECK(debug(reading, 1, word) == 0);
         CHECK(debug(reading, ~std::uint64_t{0}, word) == 0);
@@ -441,8 +442,10 @@ TEST_CASE("an invalid device is refused during construction") {
         return error_of([&] { const Device device("device", setup.registers, design); });
     };
     DeviceDesign design = design_of(setup);
-    design.largest_map = {4097, 1};
-    CHECK_THAT(refused(design), Catch::Contains("device: ") && Catch::Contains("largest map"));
+    for (const auto& [width, height] : {std::pair{4097u, 1u}, {1u, 4097u}, {0u, 1u}, {1u, 0u}}) {
+        design.largest_map = {width, height};
+        CHECK_THAT(refused(design), Catch::Contains("device: ") && Catch::Contains("largest map"));
+    }
     design = design_of(setup);
     for (const unsigned bytes : {0u, 2u, 48u, 8192u}) {
         design.burst_bytes = bytes;

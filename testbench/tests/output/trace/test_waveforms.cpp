@@ -3,6 +3,7 @@
 #include <cctype>
 #include <functional>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
 
@@ -267,4 +268,25 @@ TEST_CASE("waveforms show what the tests in place of the Summed Height Test comp
         CHECK(wrong == 0);
         CHECK(decisions.size() == 2);
     }
+}
+
+TEST_CASE("waveforms of a cache count its requests, hits and lines") {
+    const TestFolder here;
+    succeed(Arguments{"run", "--vcd", "--trace", "0:1000000", "--trace-units", "summed_height_table_cache"} +
+                set({"tests.generation_limit=3", "timing.summed_height_table_cache_bytes=1024", "output.folder=out",
+                     "output.picture=false"}),
+            here.path());
+    const VcdFile vcd(here.path() / "out/trace.vcd");
+    const nlohmann::json statistics = nlohmann::json::parse(read_all(here.path() / "out/statistics.json"));
+    const auto cache = [&](const char* name) -> const VcdFile::Signal& {
+        return vcd["tessera.summed_height_table_cache." + std::string(name)];
+    };
+    const auto counted = [&](const std::string& group, const char* figure) {
+        return statistics.at(group).at(figure).at("value").get<std::uint64_t>();
+    };
+    CHECK(cache("requests").at(vcd.end) == counted("timing.summed_height_table_cache", "items"));
+    CHECK(cache("hits").at(vcd.end) == counted("summed_height_table", "cache_hits"));
+    CHECK(cache("fills").at(vcd.end) == counted("summed_height_table", "cache_fills"));
+    CHECK(cache("lines_to_come").at(vcd.end) == 0);
+    CHECK(cache("lines_to_come").changes.size() > cache("fills").changes.size());
 }
