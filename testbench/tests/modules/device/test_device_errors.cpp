@@ -1,3 +1,5 @@
+#include <functional>
+
 #include "modules/device/program_registers.h"
 #include "testbench/tests/modules/device/bench.h"
 #include "testbench/tests/support/case_table.h"
@@ -38,48 +40,52 @@ const std::vector<Refusal> refusals{
     {TESSERA_REGISTER_SUMMED_HEIGHT_TABLE_ADDRESS, -8, DeviceError::bad_address},
 };
 
-void expect_refused(Bench& bench, tessera_driver& driver, const MachineSetup& setup, const FramePlaces& places,
-                    const std::vector<Refusal>& rows) {
-    for (const Refusal& refusal : rows) {
-        INFO(tessera_register_name(refusal.number) << " = " << refusal.value);
+/// Each of the rows is refused and changes nothing, and so is what `refuse_more` tries with the correct frame's
+/// registers; the next frame is correct.
+void check_refusals(
+    const MachineSetup& setup, const std::vector<Refusal>& rows,
+    const std::function<void(tessera_driver&)>& refuse_more = [](tessera_driver&) {}) {
+    Reference reference("reference", setup);
+    Bench bench({formats_of(setup)}, design_of(setup));
+    const FramePlaces places = bench.place(setup, 50);
+    LitKeys found;
+    bench.cpu.program = [&](Processor&) {
+        tessera_driver& driver = bench.init();
+        for (const Refusal& refusal : rows) {
+            INFO(tessera_register_name(refusal.number) << " = " << refusal.value);
+            set_frame(driver, setup, places);
+            REQUIRE(tessera_set(&driver, refusal.number, refusal.value) == TESSERA_OK);
+            CHECK(tessera_start(&driver) == static_cast<int>(refusal.error));
+            std::uint64_t address = 0;
+            std::uint32_t status = 0;
+            CHECK(tessera_last_error(&driver, &address) == static_cast<int>(refusal.error));
+            CHECK(number_of(static_cast<std::uint32_t>(address)) == refusal.number);
+            REQUIRE(tessera_status(&driver, &status) == TESSERA_OK);
+            CHECK(status == TESSERA_STATUS_ERROR);
+            std::int64_t value = 0;
+            REQUIRE(tessera_get(&driver, refusal.number, &value) == TESSERA_OK);
+            CHECK(value == refusal.value);
+        }
+        CHECK((bench.memory.reads == 0 && bench.memory.writes == 0));
         set_frame(driver, setup, places);
-        REQUIRE(tessera_set(&driver, refusal.number, refusal.value) == TESSERA_OK);
-        CHECK(tessera_start(&driver) == static_cast<int>(refusal.error));
-        std::uint64_t address = 0;
-        std::uint32_t status = 0;
-        CHECK(tessera_last_error(&driver, &address) == static_cast<int>(refusal.error));
-        CHECK(number_of(static_cast<std::uint32_t>(address)) == refusal.number);
-        REQUIRE(tessera_status(&driver, &status) == TESSERA_OK);
-        CHECK(status == TESSERA_STATUS_ERROR);
-        std::int64_t value = 0;
-        REQUIRE(tessera_get(&driver, refusal.number, &value) == TESSERA_OK);
-        CHECK(value == refusal.value);
-    }
-    CHECK((bench.memory.reads == 0 && bench.memory.writes == 0));
+        refuse_more(driver);
+        set_machine(driver, setup.registers);
+        found = run_frame(driver);
+    };
+    bench.run();
+    expect_same(found, reference.keys);
 }
 
 const CaseTable<BenchMode> refused_frames{
     "a frame with a wrong register is refused, changes nothing, and the next frame is correct: ",
     {{"functional", false}, {"timed", true}},
     [](const BenchMode& mode) {
-        const MachineSetup setup = setup_for(mode);
-        Reference reference("reference", setup);
-        Bench bench({formats_of(setup)}, design_of(setup));
-        const FramePlaces places = bench.place(setup, 50);
-        LitKeys found;
-        bench.cpu.program = [&](Processor&) {
-            tessera_driver& driver = bench.init();
-            expect_refused(bench, driver, setup, places, refusals);
+        check_refusals(setup_for(mode), refusals, [](tessera_driver& driver) {
             // with the unit `area` the same threshold is too large, and the greatest is not
-            set_frame(driver, setup, places);
             REQUIRE(tessera_set(&driver, TESSERA_REGISTER_TESTS_SUMMED_HEIGHT_UNIT, 1) == 0);
             REQUIRE(tessera_set(&driver, TESSERA_REGISTER_TESTS_SUMMED_HEIGHT_THRESHOLD, (1 << 18) + 1) == 0);
             CHECK(tessera_start(&driver) == static_cast<int>(DeviceError::bad_value));
-            set_machine(driver, setup.registers);
-            found = run_frame(driver);
-        };
-        bench.run();
-        expect_same(found, reference.keys);
+        });
     }};
 
 /// The texels that the Curvature Table covers.
@@ -94,19 +100,8 @@ const CaseTable<BenchMode> refused_tables{
     "a frame with a wrong size of the Curvature Table is refused, and the next frame is correct: ",
     {{"functional", false}, {"timed", true}},
     [](const BenchMode& mode) {
-        const MachineSetup setup = setup_for(mode, "hardware.height_test=curvature tests.curvature_threshold=0.02");
-        Reference reference("reference", setup);
-        Bench bench({formats_of(setup)}, design_of(setup));
-        const FramePlaces places = bench.place(setup, 50);
-        LitKeys found;
-        bench.cpu.program = [&](Processor&) {
-            tessera_driver& driver = bench.init();
-            expect_refused(bench, driver, setup, places, curvature_refusals);
-            set_frame(driver, setup, places);
-            found = run_frame(driver);
-        };
-        bench.run();
-        expect_same(found, reference.keys);
+        check_refusals(setup_for(mode, "hardware.height_test=curvature tests.curvature_threshold=0.02"),
+                       curvature_refusals);
     }};
 
 const CaseTable<BenchMode> stopped_frames{
