@@ -178,7 +178,8 @@ def main():
     if unexplained:
         faults.append(f"{len(unexplained)} lines are not fully reached, and scripts/checks/coverage_report/unreached.toml gives "
                       "no reason")
-    faults += [f"scripts/checks/coverage_report/unreached.toml: reached or no longer present: {entry}" for entry in absent + reasons.unused()]
+    faults += [f"scripts/checks/coverage_report/unreached.toml: reached or no longer present: {entry}"
+               for entry in absent + reasons.unused()]
     for fault in faults:
         print(f"scripts/check coverage: {fault}", file=sys.stderr)
     return 1 if faults else 0
