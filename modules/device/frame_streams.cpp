@@ -21,7 +21,7 @@ void FrameStreams::send(const datapath::Triangle& triangle, sc_core::sc_time& de
         to_get_triangle.transport(sent, delay);
         return;
     }
-    while (to_send_.size() >= most_to_send_ && !discarding_ && !clock_.halted())
+    while (to_send_.size() >= most_to_send_ && !clock_.halted())
         wait(room_to_send_ | clock_.quiet());
     if (discarding_)
         return;

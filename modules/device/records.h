@@ -66,11 +66,10 @@ class RecordReader {
   public:
     explicit constexpr RecordReader(const unsigned char* bytes) : next_(bytes) {}
     template <class Value>
-    constexpr void operator()(const char*, Value& value, bool is_signed, const char*) {
+    constexpr void operator()(const char*, Value& value, bool, const char*) {
         const std::uint32_t word = datapath::load_word(next_);
         value = static_cast<Value>(word);
-        fits_ = fits_ && static_cast<std::uint32_t>(static_cast<std::int64_t>(value)) == word &&
-                (is_signed || static_cast<std::int64_t>(value) >= 0);
+        fits_ = fits_ && static_cast<std::uint32_t>(static_cast<std::int64_t>(value)) == word;
         next_ += 4;
     }
     constexpr bool fits() const { return fits_; }

@@ -157,7 +157,7 @@ std::vector<DeviceRegister> register_map(const datapath::Registers& reset, const
     auto place = places.begin();
     datapath::visit_registers(reset, [&](const datapath::Register& field, const auto& values) {
         const std::string name = field.name;
-        const bool base = name.size() > 5 && name.compare(name.size() - 5, 5, ".base") == 0;
+        const bool base = name.find(".base") != std::string::npos;
         while (place->register_name != name)
             ++place;
         for (const std::int64_t value : values) {

@@ -12,7 +12,7 @@ Source::Source(const SourcePlan& plan)
       begins_(plan.from_triangle_queue.depth) {}
 
 void Source::send(std::uint64_t triangles, Cycle cycle) {
-    if (host_triangles_ == 0 && triangles > 0)
+    if (triangles > 0)
         host_taken_ = from_host_.take(std::max(host_taken_, cycle));
     host_triangles_ += triangles;
 }

@@ -133,6 +133,10 @@ TEST_CASE("parameters: the Rank Test's thresholds are in pixels at distance 1") 
     CHECK(p.rank_threshold == 18 * 1024);
     scene.rank_threshold = 0;
     CHECK(make_parameters(scene).rank_threshold == -(1 << 20));
+    scene.placement.scale = 0;  // no error is visible: 0 of 0
+    CHECK(make_parameters(scene).rank_threshold == -(1 << 20));
+    scene.rank_view = RankView::none;
+    CHECK(rank_threshold(scene) == 0);
 }
 
 TEST_CASE("half vector and light are in the viewer's coordinates") {

@@ -75,6 +75,8 @@ const CaseTable designs(
         {"all splitting edges cut at once", "hardware.triangulation=shorter"},
         {"alongside the other tests", "tests.normal=true tests.view=true tests.highlight=true hardware.culling=back"},
         {"limited by the Generation Test", "tests.generation_limit=5"},
+        {"cheap tests first, of the other tests only the Highlight Test",
+         "hardware.test_order=cheap_first tests.highlight=true"},
         {"three tests units, random stalls",
          "hardware.tests_units=3 timing.stalls_seed=3 timing.stalls_per_mille=300 timing.stalls_longest=20"},
         {"final edges", "hardware.final_edges=true"},
@@ -142,6 +144,12 @@ TEST_CASE("a Rank Table splits and reads nothing on a base mesh off the lattice"
     // Corners at whole multiples of 11 texels: no edge is of even length.
     const CheckedRun run(ranked("mesh.source=plane mesh.columns=4 mesh.rows=4 map.width=44 map.height=44"));
     CHECK(run.counts.edges_split == 0);
+    CHECK(Totals(run.simulation).height_table_reads == 0);
+}
+
+TEST_CASE("a Rank Test that is off reads nothing", "[rank]") {
+    const CheckedRun run(ranked("tests.summed_height=false tests.normal=true"));
+    CHECK(run.counts.edges_split > 0);
     CHECK(Totals(run.simulation).height_table_reads == 0);
 }
 

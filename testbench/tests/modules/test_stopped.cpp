@@ -1,3 +1,4 @@
+#include <array>
 #include <catch2/catch.hpp>
 #include <set>
 #include <string>
@@ -206,4 +207,20 @@ TEST_CASE("an inconsistent design is refused") {
     setup.registers.formats.families = true;
     setup.design.edge_lanes = 3;
     CHECK_THAT(message(), Contains("need Work::family and TestOrder::cheap_first"));
+    setup.design.edge_lanes = 1;
+    setup.design.normal_tests = 2;
+    CHECK_THAT(message(), Contains("need Work::family and TestOrder::cheap_first"));
+}
+
+TEST_CASE("a table's row that no memory accepts is an error") {
+    const MachineSetup setup = setup_of(one_quad_job());
+    Pipeline pipeline("pipeline", setup.registers, setup.design);
+    Rasteriser rasteriser("rasteriser", pipeline.clock, {});
+    Host host("host", pipeline, setup.base_triangles, [&](const TableWriter& write) {
+        const std::array<unsigned char, 4> row{};
+        write(setup.registers.displacement_map.base + setup.registers.displacement_map.bytes(), row.data(), row.size());
+    });
+    host.bind();
+    pipeline.lighting.to_rasteriser.bind(rasteriser.from_lighting);
+    CHECK(error_of([] { sc_core::sc_start(); }) == "a table memory did not accept a row of its table");
 }

@@ -129,6 +129,10 @@ TEST_CASE("CT: every edge of narrow formats measures and decides alike from both
     r.height_table.base = 0x2000;
     shape_tables(r);
     CHECK(r.height_table.columns == curvature_entries(covered_texels(r)));
+    Registers empty;
+    empty.formats.height_test = HeightTest::curvature;
+    shape_tables(empty);
+    CHECK(empty.height_table.bytes() == 0);
     // Random bits, by address.
     const auto memory = [&](std::uint64_t address) {
         const std::uint64_t bits = (address + 1) * 0x9e3779b97f4a7c15u;

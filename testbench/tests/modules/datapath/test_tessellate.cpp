@@ -85,8 +85,8 @@ TEST_CASE("vertex: parts are equal only if every field is") {
     check_equality(Position{5, 6, 7}, &Position::x, &Position::y, &Position::z);
     check_equality(Direction{5, 6, 7}, &Direction::x, &Direction::y, &Direction::z);
     check_equality(TexCoord{5, 6}, &TexCoord::u, &TexCoord::v);
-    check_equality(ScreenPosition{5, 6, 7, true}, &ScreenPosition::x, &ScreenPosition::y, &ScreenPosition::w,
-                   &ScreenPosition::in_front);
+    check_equality(ScreenPosition{5, 6, 7, true, 8}, &ScreenPosition::x, &ScreenPosition::y, &ScreenPosition::w,
+                   &ScreenPosition::in_front, &ScreenPosition::distance);
 }
 
 TEST_CASE("tessellate: children carry complete vertices and the parent's tags") {

@@ -74,15 +74,19 @@ struct Bench {
     std::uint64_t next = memory_base + 4;
     const bool direct;  ///< the processor is joined to the one device's registers
 
-    Bench(const std::vector<datapath::Registers>& initial, const DeviceDesign& design, bool its_direct = false)
+    /// wires: reset and interrupt are connected; they are optional.
+    Bench(const std::vector<datapath::Registers>& initial, const DeviceDesign& design, bool its_direct = false,
+          bool wires = true)
         : router("router", initial.size()), direct(its_direct) {
         for (std::size_t k = 0; k < initial.size(); ++k) {
             devices.push_back(std::make_unique<Device>(("device_" + std::to_string(k)).c_str(), initial[k], design));
             interrupts.push_back(
                 std::make_unique<sc_core::sc_signal<bool>>(("interrupt_" + std::to_string(k)).c_str()));
             devices[k]->bus.bind(router.from);
-            devices[k]->interrupt.bind(*interrupts[k]);
-            devices[k]->reset.bind(reset);
+            if (wires) {
+                devices[k]->interrupt.bind(*interrupts[k]);
+                devices[k]->reset.bind(reset);
+            }
             if (direct)
                 router.to_devices[k].bind(memory.socket);  // unused
             else

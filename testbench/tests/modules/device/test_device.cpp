@@ -20,6 +20,7 @@ struct Row {
     int quantum_ns = 0;
     unsigned burst_bytes = 64;
     bool beyond = false;  // bits of table entries beyond their formats are set
+    bool wires = true;    // reset and interrupt are connected
 };
 
 /// Restores the default job's sizes in small_job().
@@ -41,7 +42,7 @@ void same_as_testbench(const Row& row, const MachineSetup& setup) {
     design.burst_bytes = row.burst_bytes;
     // the initial register values are not those that the frame needs
     const datapath::Registers initial = formats_of(setup);
-    Bench bench({initial}, design, row.approximately_timed);
+    Bench bench({initial}, design, row.approximately_timed, row.wires);
     bench.cpu.approximately_timed = row.approximately_timed;
     const FramePlaces places = bench.place(setup, row.ring_size, row.beyond);
     LitKeys found;
@@ -85,6 +86,10 @@ const CaseTable<Row> same{
     {
         {"functional", "", false},
         {"timed", "", true},
+        {"functional, reset and interrupt not connected", "", false, 100, false, 0, 64, false, false},
+        {"timed, reset and interrupt not connected", "", true, 100, false, 0, 64, false, false},
+        {"timed, random stalls", "timing.stalls_seed=3 timing.stalls_per_mille=500 timing.stalls_longest=2000", true,
+         1},
         {"functional, approximately timed processor", "", false, 100, true},
         {"timed, approximately timed processor", "", true, 100, true},
         {"functional, a ring of one record", "", false, 1},

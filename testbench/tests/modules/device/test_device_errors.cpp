@@ -233,6 +233,7 @@ const CaseTable<BenchMode> halted_clock{
             cpu.pass(sc_core::sc_time(20, sc_core::SC_US));
             bench.devices[0]->pipeline().clock.halt();
             CHECK(tessera_wait(&driver, 1000) == static_cast<int>(DeviceError::machine_stopped));
+            CHECK(tessera_start(&driver) == static_cast<int>(DeviceError::machine_stopped));
         };
         bench.run();
     }};
@@ -386,6 +387,9 @@ TEST_CASE("registers for other formats than the device's are not written") {
             INFO(other);
             CHECK(program_registers(platform, setup_for({"", false}, other).registers) == TESSERA_NO_DEVICE);
         }
+        tessera_platform broken = platform;
+        broken.read32 = [](void*, std::uint32_t, std::uint32_t*) { return 1; };
+        CHECK(program_registers(broken, setup.registers) == TESSERA_BUS);
         std::int64_t width = 1;
         CHECK(tessera_get(&bench.drivers[0], TESSERA_REGISTER_MAP_WIDTH, &width) == TESSERA_OK);
         CHECK(width == formats_of(setup).map.width);

@@ -3,6 +3,7 @@
 #include <set>
 #include <string>
 
+#include "modules/device/driver/example.h"
 #include "modules/device/driver/tessera_driver.h"
 #include "modules/device/register_map.h"
 
@@ -15,14 +16,15 @@ namespace {
 struct Words {
     std::array<std::uint32_t, register_bytes / 4> words{};
     unsigned accesses = 0;
-    unsigned failing = ~0u;  // of the accesses
+    unsigned failing = ~0u;  // of the accesses: the first that fails
+    unsigned failures = 1;   // in succession
     unsigned pauses = 0;
 
     Words() {
         words[0] = 0x53534554;
         words[1] = 0x00010007;
     }
-    bool fails() { return accesses++ == failing; }
+    bool fails() { return accesses++ - failing < failures; }
     tessera_platform platform() {
         return {this,
                 [](void* self, std::uint32_t offset, std::uint32_t* value) {
@@ -150,6 +152,41 @@ TEST_CASE("driver: every function returns a bus error in any of its accesses") {
     CHECK(all > 25);
     for (unsigned failing = 0; failing < all; ++failing)
         use(failing);
+}
+
+TEST_CASE("driver: a write that is refused is a bus error if the status cannot be read either") {
+    Words device;
+    const tessera_platform platform = device.platform();
+    tessera_driver driver;
+    REQUIRE(tessera_init(&driver, &platform) == TESSERA_OK);
+    device.words[offset::status / 4] = TESSERA_STATUS_BUSY;
+    device.failing = device.accesses;
+    CHECK(tessera_set(&driver, TESSERA_REGISTER_MAP_WIDTH, 1) == TESSERA_BUSY);
+    device.failing = device.accesses;
+    device.failures = 2;
+    CHECK(tessera_set(&driver, TESSERA_REGISTER_MAP_WIDTH, 1) == TESSERA_BUS);
+}
+
+TEST_CASE("driver: a platform without a pause polls without one") {
+    Words device;
+    tessera_platform platform = device.platform();
+    platform.pause = nullptr;
+    tessera_driver driver;
+    REQUIRE(tessera_init(&driver, &platform) == TESSERA_OK);
+    device.words[offset::status / 4] = TESSERA_STATUS_BUSY;
+    CHECK(tessera_wait(&driver, 3) == TESSERA_TIMEOUT);
+    CHECK(device.pauses == 0);
+}
+
+TEST_CASE("driver: the example ends at the first error") {
+    Words device;
+    const tessera_platform platform = device.platform();
+    const example_scene scene{};
+    device.words[offset::status / 4] = TESSERA_STATUS_ERROR;
+    device.words[offset::error / 4] = TESSERA_ERROR_BAD_RING_SIZE;
+    CHECK(draw_three_frames(&platform, &scene) == TESSERA_ERROR_BAD_RING_SIZE);
+    device.words[0] = 0;
+    CHECK(draw_three_frames(&platform, &scene) == TESSERA_NO_DEVICE);
 }
 
 TEST_CASE("driver: every result has a text") {

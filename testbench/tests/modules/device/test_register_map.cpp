@@ -30,6 +30,7 @@ datapath::Registers wide() {
     datapath::Registers registers;
     registers.formats.normal = Format::make_signed(18, 16);
     registers.formats.highlight_tag = true;
+    registers.formats.final_edges = true;
     registers.formats.height_test = datapath::HeightTest::rank;
     registers.formats.distances = true;
     registers.formats.bound_bits = 16;
@@ -180,6 +181,12 @@ TEST_CASE("records: a written record is read back, and a value beyond its format
     }
     registers.formats.position = Format::make_signed(24, 16);
     CHECK_FALSE(read_base_triangle(bytes.data(), registers.formats, back));
+    for (const auto& [z, fits] : {std::pair{-(1 << 23), true}, {(1 << 23) - 1, true}, {1 << 23, false}}) {
+        for (datapath::Vertex& v : triangle.vertices)
+            v.position.z = z;
+        write_base_triangle(triangle, bytes.data());
+        CHECK(read_base_triangle(bytes.data(), registers.formats, back) == fits);
+    }
 
     LitTriangle lit;
     lit.corners[1] = {{-5, 7, -1, true}, {3, 4}, 200};

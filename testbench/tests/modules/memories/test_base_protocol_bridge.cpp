@@ -217,6 +217,23 @@ TEST_CASE("bridge: END_REQ by return with a delay: the next entry is sent after 
     CHECK(bench.reader.answered == Cycles{30});
 }
 
+TEST_CASE("bridge: an answer does not end another entry's request") {
+    ScriptedBench bench(Way::accepted);
+    bench.reader.reads = gathers(1, 3);
+    bench.in_cycle(12, [&] { bench.memory.send_back(*bench.memory.come[0], tlm::END_REQ); });
+    bench.in_cycle(15, [&] {
+        CHECK(bench.memory.come.size() == 2);
+        bench.answer(0);
+    });
+    bench.in_cycle(20, [&] {
+        CHECK(bench.memory.come.size() == 2);
+        bench.answer(1);
+    });
+    bench.in_cycle(25, [&] { bench.answer(2); });
+    bench.run();
+    CHECK(bench.reader.answered == Cycles{25});
+}
+
 TEST_CASE("bridge: END_REQ may come later, and its delay is added") {
     ScriptedBench bench(Way::accepted);
     bench.reader.reads = gathers(1, 2);

@@ -250,6 +250,9 @@ TEST_CASE("a tag distinguishes all triangles between Get Triangle and Pass or Te
     CHECK(tag_bits(design) == 6);
     design.timing.pass_or_tessellate.buffer = 31;
     CHECK(tag_bits(design) == 7);
+    design.timing.pass_or_tessellate.buffer = 0xffffff00u;
+    CHECK(tag_bits(design) == 32);
+    design.timing.pass_or_tessellate.buffer = 31;
     design.transform_pipelines = 2;
     CHECK(triangles_ahead_of_parts(design) == 33 + 20);
     CHECK(tag_bits_in_use(design) == 32);  // blocking transport

@@ -79,9 +79,10 @@ struct Bench {
 
     /// Timed mode: edges one after another; returns the cycles in which they leave.
     std::vector<std::uint64_t> run_timed() {
-        driver.items = edges;
         sc_core::sc_start(sc_core::SC_ZERO_TIME);
         fill_memory();
+        driver.items = edges;
+        clock.wake(driver);
         sc_core::sc_start();
         REQUIRE(driver.offered.front() == 0);
         return sink.cycles;
@@ -112,6 +113,23 @@ TEST_CASE("Normal Test unit with a Highlight Test: one more cycle, still one edg
     CHECK(bench.run_timed() == std::vector<std::uint64_t>{11, 12, 13});
     const int both = datapath::normal_bit | datapath::highlight_bit;
     CHECK(bench.tests() == std::vector<int>{both, 0, both});
+}
+
+// Of a triangle only vertex 0 is new: its N' is `up`, that of the others as the edges carry it.
+TEST_CASE("Normal Test unit: N' of a new vertex is its own, that of any other the edge's") {
+    Bench bench(false, {});
+    NormalOperands vertex = bench.edges[0];
+    vertex.tag.part = 0;
+    vertex.new_vertices = 1;
+    vertex.displaced_n_i = vertex.displaced_n_j = tilted;  // not used
+    for (NormalOperands& edge : bench.edges)
+        edge.new_vertices = 1;
+    bench.edges[0].displaced_n_i = tilted;  // replaced by `up`: (up, up)
+    bench.edges[0].displaced_n_j = up;
+    bench.edges[2].displaced_n_j = at_half;  // replaced by `up`: (tilted, up)
+    bench.edges.insert(bench.edges.begin(), vertex);
+    bench.run_timed();
+    CHECK(bench.tests() == std::vector<int>{0, 0, 0});
 }
 
 TEST_CASE("Normal Test unit with a Highlight Test of 7 cycles") {

@@ -242,6 +242,13 @@ TEST_CASE("operands and results of different edges are an error") {
     CHECK_THROWS_WITH(sc_core::sc_start(), Catch::Contains("the tests' results belong to different edges"));
 }
 
+TEST_CASE("operands and results of different edges of one triangle are an error") {
+    Bench bench;
+    bench.add_edge(datapath::gating_tests);
+    bench.height_operands.items[0].tag.part ^= 1;
+    CHECK_THROWS_WITH(sc_core::sc_start(), Catch::Contains("the tests' results belong to different edges"));
+}
+
 TEST_CASE("an answer for another edge than the requested one is an error") {
     Bench bench;
     bench.normal_test.answers_for = 17;

@@ -28,10 +28,11 @@ struct Bench {
     Driver<datapath::Triangle> driver;
 
     Bench(const std::string& name, CycleScheduler& clock, const datapath::Registers& registers,
-          const QueueDesign& design, std::uint64_t seed, const StallParameters& sink_stalls)
+          const QueueDesign& design, std::uint64_t seed, const StallParameters& sink_stalls,
+          const StallParameters& level_stalls = {})
         : all(with(design)),
           sink(("sink_" + name).c_str(), clock, sink_stalls),
-          level(("level_" + name).c_str(), clock),
+          level(("level_" + name).c_str(), clock, level_stalls),
           memory(("memory_" + name).c_str(), clock, OffChipTiming{}, {}, std::uint64_t{1} << 20,
                  datapath::packed_triangle_tag_bytes),
           queue(("queue_" + name).c_str(), {clock, registers, all}),
@@ -148,5 +149,29 @@ TEST_CASE("triangle queue: the host may send while fewer triangles wait than the
         REQUIRE(queue.waiting() == waiting);
         CHECK(queue.below_watermark() == (waiting < 3));
         CHECK(benches[waiting]->level.items.size() == (waiting < 3 ? 0 : 1));  // reported on each change
+    }
+}
+
+// Get Triangle takes the level late: changes that it has not seen are not kept, but the last one is.
+TEST_CASE("triangle queue: the last change of its level is reported, however late the earlier ones are taken") {
+    CycleScheduler clock("clock", sc_core::sc_time(5, sc_core::SC_NS));
+    const datapath::Registers registers;
+    std::vector<std::unique_ptr<Bench>> benches;
+    for (std::uint64_t seed = 0; seed < 8; ++seed) {
+        QueueDesign design;
+        design.watermark = 2;
+        benches.push_back(std::make_unique<Bench>(std::to_string(seed), clock, registers, design, 3 * seed,
+                                                  StallParameters{3 * seed, 500, 12},
+                                                  StallParameters{3 * seed + 2, 1000, 100}));
+    }
+    sc_core::sc_start();
+    for (const auto& bench : benches) {
+        INFO(bench->queue.name());
+        CHECK(bench->came() == in_order());
+        const std::vector<QueueLevel>& levels = bench->level.items;
+        REQUIRE(levels.size() > 2);
+        CHECK(levels.back().below_watermark);
+        for (std::size_t k = 1; k < levels.size(); ++k)
+            CHECK(levels[k].below_watermark != levels[k - 1].below_watermark);
     }
 }

@@ -54,6 +54,7 @@ const CaseTable designs(
         {"four Transform pipelines, a high watermark",
          "hardware.transform_pipelines=4 timing.transform_interval=4 hardware.queue_watermark=50"},
         {"two machines", "hardware.machines=2"},
+        {"a machine without triangles", "mesh.source=plane mesh.columns=1 mesh.rows=1 hardware.machines=3"},
         {"three tests units", "hardware.tests_units=3"},
         {"three tests units, four ports, last in first out, two machines",
          "hardware.tests_units=3 timing.summed_height_table_ports=4 hardware.queue_order=lifo hardware.machines=2"},
