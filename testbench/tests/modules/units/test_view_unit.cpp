@@ -31,7 +31,7 @@ struct Bench {
 
     static const datapath::Registers& with_threshold(datapath::Registers& registers) {
         registers.tests.view_test = true;
-        registers.tests.view_threshold = 100 << registers.formats.screen.fraction;
+        registers.tests.view_threshold = 100u << registers.formats.screen.fraction;
         return registers;
     }
 
