@@ -67,16 +67,16 @@ TEST_CASE("View Test unit: an edge longer than the threshold is split, one per c
     CHECK(bench.sink.cycles == std::vector<std::uint64_t>{1, 2, 3});
 }
 
-// Vertex 1 is new, at x = 50; the edges carry another position for it, 500.
+// Vertex 1 is new, at x = 50, vertices 0 and 2 are at -60 and 30; where the edges carry vertex 1, it is at 0 and at 500.
 TEST_CASE("View Test unit: P's of a new vertex comes from Transform, that of any other from the edge") {
     Bench bench;
-    bench.add_edge(0, 2, 0, 500);
-    bench.add_edge(1, 2, 500, 200);
-    bench.add_edge(2, 2, 200, 0);
+    bench.add_edge(0, 2, -60, 0);
+    bench.add_edge(1, 2, 500, 30);
+    bench.add_edge(2, 2, 30, -60);
     ScreenCorner corner;
     corner.tag.part = 1;
     corner.screen = bench.at(50);
     bench.corners.items = {corner};
     sc_core::sc_start();
-    CHECK(bench.decisions() == std::vector<bool>{false, true, true});
+    CHECK(bench.decisions() == std::vector<bool>{true, false, false});
 }
