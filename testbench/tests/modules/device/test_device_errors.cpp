@@ -325,6 +325,13 @@ TEST_CASE("during a frame only reset, interrupts and the read index may be writt
         }
         CHECK(tessera_start(&driver) == TESSERA_BUSY);
         CHECK(bench.devices[0]->busy());
+        tlm::tlm_generic_payload debug;
+        unsigned char word[4] = {};
+        debug.set_command(writing);
+        debug.set_address(TESSERA_MAP_WIDTH);
+        debug.set_data_ptr(word);
+        debug.set_data_length(4);
+        CHECK(bench.router.to_devices[0]->transport_dbg(debug) == 0);
         cpu.pass(sc_core::sc_time(100, sc_core::SC_US));
         std::uint32_t count = 0;
         REQUIRE(tessera_ring_count(&driver, &count) == TESSERA_OK);
@@ -418,6 +425,8 @@ TEST_CASE("debug transport reads all registers, writes plain ones, and starts no
         CHECK(debug(writing, offset::control, word) == 0);
         CHECK(debug(writing, offset::id, word) == 0);
         CHECK(debug(writing, offset::interrupt, word) == 0);
+        CHECK(debug(writing, offset::interrupt_enable, word) == 0);
+        CHECK(debug(writing, offset::ring_read_index, word) == 0);
         CHECK(debug(writing, offset::ring_address, two) == 8);
         CHECK(debug(reading, offset::ring_address, odd) == 4);
         CHECK(debug(tlm::TLM_IGNORE_COMMAND, offset::ring_address, word) == 0);

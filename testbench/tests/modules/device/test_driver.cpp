@@ -44,6 +44,12 @@ struct Words {
                 },
                 [](void* self) { ++static_cast<Words*>(self)->pauses; }};
     }
+    tessera_driver driver() {
+        const tessera_platform its = platform();
+        tessera_driver result;
+        REQUIRE(tessera_init(&result, &its) == TESSERA_OK);
+        return result;
+    }
 };
 
 }  // namespace
@@ -62,9 +68,7 @@ TEST_CASE("driver: it identifies the device and its register map") {
 
 TEST_CASE("driver: registers of one and two words, signed and unsigned, read-only and absent") {
     Words device;
-    const tessera_platform platform = device.platform();
-    tessera_driver driver;
-    REQUIRE(tessera_init(&driver, &platform) == TESSERA_OK);
+    tessera_driver driver = device.driver();
     std::int64_t value = 0;
     CHECK(tessera_set(&driver, TESSERA_REGISTER_TRANSFORM_ROW_X_OFFSET, -5) == TESSERA_OK);
     CHECK(device.words[TESSERA_TRANSFORM_ROW_X_OFFSET / 4] == 0xfffffffb);
@@ -86,9 +90,7 @@ TEST_CASE("driver: registers of one and two words, signed and unsigned, read-onl
 
 TEST_CASE("driver: it polls up to the limit, and pauses between polls") {
     Words device;
-    const tessera_platform platform = device.platform();
-    tessera_driver driver;
-    REQUIRE(tessera_init(&driver, &platform) == TESSERA_OK);
+    tessera_driver driver = device.driver();
     device.words[offset::status / 4] = TESSERA_STATUS_BUSY;
     CHECK(tessera_wait(&driver, 3) == TESSERA_TIMEOUT);
     CHECK(device.pauses == 3);
@@ -103,9 +105,7 @@ TEST_CASE("driver: it polls up to the limit, and pauses between polls") {
 
 TEST_CASE("driver: the ring's records are read in order, and word by word") {
     Words device;
-    const tessera_platform platform = device.platform();
-    tessera_driver driver;
-    REQUIRE(tessera_init(&driver, &platform) == TESSERA_OK);
+    tessera_driver driver = device.driver();
     REQUIRE(tessera_set_ring(&driver, 0x1000, 2) == TESSERA_OK);
     REQUIRE(tessera_start(&driver) == TESSERA_OK);
     device.words[offset::ring_write_index / 4] = 3;
@@ -156,9 +156,7 @@ TEST_CASE("driver: every function returns a bus error in any of its accesses") {
 
 TEST_CASE("driver: a write that is refused is a bus error if the status cannot be read either") {
     Words device;
-    const tessera_platform platform = device.platform();
-    tessera_driver driver;
-    REQUIRE(tessera_init(&driver, &platform) == TESSERA_OK);
+    tessera_driver driver = device.driver();
     device.words[offset::status / 4] = TESSERA_STATUS_BUSY;
     device.failing = device.accesses;
     CHECK(tessera_set(&driver, TESSERA_REGISTER_MAP_WIDTH, 1) == TESSERA_BUSY);

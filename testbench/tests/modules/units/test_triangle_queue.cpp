@@ -71,18 +71,26 @@ std::vector<std::uint32_t> in_order() {
     return tags;
 }
 
+/// Eight queues with drivers and sinks of different seeds. spills: with 1 to 4 places on
+/// chip.
+std::vector<std::unique_ptr<Bench>> eight_benches(CycleScheduler& clock, const datapath::Registers& registers,
+                                                  QueueDesign design, bool spills, unsigned level_stalls_per_mille) {
+    std::vector<std::unique_ptr<Bench>> benches;
+    for (std::uint64_t seed = 0; seed < 8; ++seed) {
+        design.capacity = spills ? 1 + seed % 4 : 0;
+        benches.push_back(std::make_unique<Bench>(std::to_string(seed), clock, registers, design, 3 * seed,
+                                                  StallParameters{3 * seed, 500, 12},
+                                                  StallParameters{3 * seed + 2, level_stalls_per_mille, 100}));
+    }
+    return benches;
+}
+
 }  // namespace
 
 TEST_CASE("triangle queue: first in first out, through off-chip memory and back") {
     CycleScheduler clock("clock", sc_core::sc_time(5, sc_core::SC_NS));
     const datapath::Registers registers;
-    std::vector<std::unique_ptr<Bench>> benches;
-    for (std::uint64_t seed = 0; seed < 8; ++seed) {
-        QueueDesign design;
-        design.capacity = 1 + seed % 4;
-        benches.push_back(std::make_unique<Bench>(std::to_string(seed), clock, registers, design, 3 * seed,
-                                                  StallParameters{3 * seed, 500, 12}));
-    }
+    const auto benches = eight_benches(clock, registers, {}, true, 0);
     sc_core::sc_start();
     for (const auto& bench : benches) {
         INFO(bench->queue.name());
@@ -97,14 +105,9 @@ TEST_CASE("triangle queue: first in first out, through off-chip memory and back"
 TEST_CASE("triangle queue: last in first out, through off-chip memory and back, no triangle is lost or duplicated") {
     CycleScheduler clock("clock", sc_core::sc_time(5, sc_core::SC_NS));
     const datapath::Registers registers;
-    std::vector<std::unique_ptr<Bench>> benches;
-    for (std::uint64_t seed = 0; seed < 8; ++seed) {
-        QueueDesign design;
-        design.order = TriangleOrder::lifo;
-        design.capacity = 1 + seed % 4;
-        benches.push_back(std::make_unique<Bench>(std::to_string(seed), clock, registers, design, 3 * seed,
-                                                  StallParameters{3 * seed, 500, 12}));
-    }
+    QueueDesign design;
+    design.order = TriangleOrder::lifo;
+    const auto benches = eight_benches(clock, registers, design, true, 0);
     sc_core::sc_start();
     for (const auto& bench : benches) {
         INFO(bench->queue.name());
@@ -156,14 +159,9 @@ TEST_CASE("triangle queue: the host may send while fewer triangles wait than the
 TEST_CASE("triangle queue: the last change of its level is reported, however late the earlier ones are taken") {
     CycleScheduler clock("clock", sc_core::sc_time(5, sc_core::SC_NS));
     const datapath::Registers registers;
-    std::vector<std::unique_ptr<Bench>> benches;
-    for (std::uint64_t seed = 0; seed < 8; ++seed) {
-        QueueDesign design;
-        design.watermark = 2;
-        benches.push_back(std::make_unique<Bench>(std::to_string(seed), clock, registers, design, 3 * seed,
-                                                  StallParameters{3 * seed, 500, 12},
-                                                  StallParameters{3 * seed + 2, 1000, 100}));
-    }
+    QueueDesign design;
+    design.watermark = 2;
+    const auto benches = eight_benches(clock, registers, design, false, 1000);
     sc_core::sc_start();
     for (const auto& bench : benches) {
         INFO(bench->queue.name());

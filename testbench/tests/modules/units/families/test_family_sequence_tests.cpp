@@ -216,6 +216,12 @@ TEST_CASE("families, Sequence Tests: results of different edges are an error") {
     CHECK_THROWS_WITH(sc_core::sc_start(), Catch::Contains("the tests' results belong to different edges"));
 }
 
+TEST_CASE("families, Sequence Tests: results of different triangles are an error") {
+    Bench bench(timing_of(32, 4, {}));
+    bench.lane[1]->view_results.items[0].tag.triangle ^= 1;
+    CHECK_THROWS_WITH(sc_core::sc_start(), Catch::Contains("the tests' results belong to different edges"));
+}
+
 TEST_CASE("families, Sequence Tests: an answer without a request is an error") {
     Bench bench(timing_of(32, 4, {}));
     sc_core::sc_start(sc_core::SC_ZERO_TIME);
