@@ -14,6 +14,8 @@ namespace {
 
 const fs::path example = source_folder() / "testbench/examples/first_machine";
 const fs::path platform = source_folder() / "testbench/examples/platform";
+// ccache finds objects again only if they are compiled below the project.
+const fs::path scratch = TESSERA_BUILD_FOLDER;
 const fs::path careful_client = source_folder() / "testbench/tests/packaging/careful_client";
 const Arguments from_sources{"-DTESSERA_SOURCE=" + source_folder().string()};
 const Arguments with_glm_and_fmt{"-DCMAKE_DISABLE_FIND_PACKAGE_glm=OFF", "-DCMAKE_DISABLE_FIND_PACKAGE_fmt=OFF"};
@@ -116,7 +118,7 @@ std::vector<std::string> code_in(const fs::path& markdown, const std::string& la
 }  // namespace
 
 TEST_CASE("the example finds a moved installation, by CMake and by pkg-config") {
-    const TestFolder folder;
+    const TestFolder folder(scratch);
     const fs::path moved = install_in(folder.path());
     fs::copy(example, folder.path() / "example");
     require_success(configuring("example", {"-DCMAKE_CXX_FLAGS=" + strict}, moved), folder.path());
@@ -140,7 +142,7 @@ TEST_CASE("the example finds a moved installation, by CMake and by pkg-config") 
 }
 
 TEST_CASE("the example builds with the sources as a folder, and by FetchContent") {
-    const TestFolder folder;
+    const TestFolder folder(scratch);
     const Arguments settings =
         with_glm_and_fmt + Arguments{"-DCMAKE_CXX_FLAGS=" + strict, "-DTESSERA_SOURCE=" + source_folder().string(),
                                      "-DFETCHCONTENT_SOURCE_DIR_TESSERA=" + source_folder().string(),
@@ -157,7 +159,7 @@ TEST_CASE("the example builds with the sources as a folder, and by FetchContent"
 
 // Runs every command of the page in order; in both modes the processor's program receives the same pictures.
 TEST_CASE("the first platform builds and runs as in its README") {
-    const TestFolder home;
+    const TestFolder home(scratch);
     const std::vector<std::string> commands = code_in(platform / "README.md", "sh");
     CHECK(commands.size() == 7);
     std::string printed;
@@ -179,7 +181,7 @@ TEST_CASE("the first platform builds and runs as in its README") {
 }
 
 TEST_CASE("a client keeps its variables and its warnings") {
-    const TestFolder folder;
+    const TestFolder folder(scratch);
     const fs::path moved = install_in(folder.path());
     const Arguments client =
         configuring(careful_client, {"-DCOMPONENTS=datapath;modules;setup;device" + and_cci}, moved);
@@ -204,7 +206,7 @@ TEST_CASE("a client keeps its variables and its warnings") {
 }
 
 TEST_CASE("each installed header compiles alone") {
-    const TestFolder folder;
+    const TestFolder folder(scratch);
     const fs::path headers = install_in(folder.path()) / "include/tessera";
     const std::string compile = TESSERA_COMPILER " -std=c++" TESSERA_STANDARD " " + strict + cci_headers + " ";
     // SystemC takes most of the compile time: include it once for all headers.
@@ -233,7 +235,7 @@ TEST_CASE("each installed header compiles alone") {
 }
 
 TEST_CASE("a missing component, a missing package and another C++ standard are refused with the reason") {
-    const TestFolder folder;
+    const TestFolder folder(scratch);
     const fs::path moved = install_in(folder.path());
     const auto client = [&](const std::string& components, const Arguments& settings = {}) {
         return configuring(careful_client, Arguments{"-DCOMPONENTS=" + components} + settings, moved);
@@ -258,7 +260,7 @@ TEST_CASE("a missing component, a missing package and another C++ standard are r
 }
 
 TEST_CASE("components left out of an installation are named with the reason") {
-    const TestFolder folder;
+    const TestFolder folder(scratch);
     require_success(configuring(source_folder(), Arguments{"-DTESSERA_TESTBENCH=OFF"} + no_systemc_package),
                     folder.path(), no_systemc);
     require_success({"cmake", "--install", "build", "--prefix", "installed"}, folder.path());
@@ -276,7 +278,7 @@ TEST_CASE("components left out of an installation are named with the reason") {
 }
 
 TEST_CASE("the version is the same everywhere") {
-    const TestFolder folder;
+    const TestFolder folder(scratch);
     const fs::path moved = install_in(folder.path());
     CHECK(std::to_string(version_major) + "." + std::to_string(version_minor) + "." + std::to_string(version_patch) ==
           version);

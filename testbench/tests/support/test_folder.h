@@ -24,8 +24,8 @@ inline void write_all(const std::filesystem::path& file, const std::string& cont
 /// A temporary folder, removed at the end of the test.
 class TestFolder {
   public:
-    TestFolder() {
-        std::string name = (std::filesystem::temp_directory_path() / "tessera_test_XXXXXX").string();
+    explicit TestFolder(const std::filesystem::path& parent = std::filesystem::temp_directory_path()) {
+        std::string name = (parent / "tessera_test_XXXXXX").string();
         REQUIRE(::mkdtemp(name.data()) != nullptr);
         path_ = std::filesystem::canonical(name);
     }
