@@ -93,17 +93,23 @@ void write_run_folder(const std::filesystem::path& folder, const Job& job, const
         write_file(folder / "queue_levels.csv",
                    queue_levels_csv(simulation.last_machine().pipeline.triangle_queue.history()));
     }
-    progress.show("writing the mesh", 0.87);
-    if (job.output.ply)
-        write_ply(folder / "mesh.ply", simulation.monitor.mesh, units);
-    if (job.output.obj)
-        write_obj(folder / "mesh.obj", simulation.monitor.mesh, units);
-    if (job.output.picture) {
-        progress.show("picture", 0.9);
-        const std::vector<Picture> pictures = render_views(make_render_mesh(simulation.monitor.mesh, setup),
-                                                           make_view(job.camera), {PictureView::overview}, {});
-        write_file(folder / "picture.png", encode_png(pictures.front().image));
-    }
+    progress.show("mesh and picture", 0.87);
+    // An AtomicSet is for one thread at a time: the picture's file is written after these.
+    auto mesh_files = beside([&] {
+        if (job.output.ply)
+            write_ply(folder / "mesh.ply", simulation.monitor.mesh, units);
+        if (job.output.obj)
+            write_obj(folder / "mesh.obj", simulation.monitor.mesh, units);
+    });
+    std::string picture;
+    if (job.output.picture)
+        picture = encode_png(render_views(make_render_mesh(simulation.monitor.mesh, setup), make_view(job.camera),
+                                          {PictureView::overview}, {})
+                                 .front()
+                                 .image);
+    mesh_files.get();
+    if (job.output.picture)
+        write_file(folder / "picture.png", picture);
 }
 
 /// Names and windows of the traces; writes trace.fst if requested.
@@ -211,16 +217,16 @@ Ending run_once(const Job& asked, const Command& command, const std::string& nam
         return {ExitCode::deadlock, {}};
     }
 
+    if (scoreboard) {
+        checks.conformance = scoreboard->result();
+        golden.reset();  // 36 bytes per texel
+    }
     EmittedMesh& mesh = simulation.monitor.mesh;
     mesh.sort();
     auto mesh_counts = beside([&] { return count_mesh(mesh); });
     auto invariants = beside([&] {
         return job.check.invariants ? std::optional<InvariantResult>(check_invariants(mesh, setup)) : std::nullopt;
     });
-    if (scoreboard) {
-        checks.conformance = scoreboard->result();
-        golden.reset();  // 36 bytes per texel
-    }
     if (work)
         checks.work = work_result(*work, simulation);
     if (checked_units)

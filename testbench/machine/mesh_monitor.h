@@ -29,10 +29,11 @@ class MeshMonitor : public sc_core::sc_object, public tlm::tlm_analysis_if<datap
         const auto& v = triangle.vertices;
         if (mesh.triangles.size() % progress_step == 0 && progress_)
             progress_(mesh.triangles.size());
-        mesh.triangles.push_back(EmittedTriangle::from(
-            triangle, back_face_culling_ && datapath::faces_away(v[0].screen, v[1].screen, v[2].screen)));
+        EmittedTriangle emitted = EmittedTriangle::from(
+            triangle, back_face_culling_ && datapath::faces_away(v[0].screen, v[1].screen, v[2].screen));
         if (decisions != nullptr)
-            decisions->complete_tags(triangle, mesh.triangles.back());
+            decisions->complete_tags(triangle, emitted);
+        mesh.triangles.push_back(emitted);
     }
 
     /// `progress` is called occasionally with the number of triangles so far.

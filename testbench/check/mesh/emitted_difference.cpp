@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <tuple>
 
 #include "testbench/check/mesh/corner_text.h"
@@ -60,12 +61,12 @@ EmittedDifference::EmittedDifference(const EmittedMesh& mesh, std::size_t base_t
             order_[offsets_[mesh.triangles[i].base + 1]++] = static_cast<std::uint32_t>(i);
 }
 
-EmittedDifference::Entry& EmittedDifference::entry_of(const EmittedTriangle& triangle) {
+EmittedDifference::Entry& EmittedDifference::entry_of(const EmittedTriangle& triangle, const Entry& added) {
     const std::uint32_t number = table_.number_of(
-        hash_of(triangle), [&](std::uint32_t known) { return *entries_[known].triangle == triangle; },
-        [&](std::uint32_t known) { return hash_of(*entries_[known].triangle); });
+        hash_of(triangle), [&](std::uint32_t known) { return triangle_of(entries_[known]) == triangle; },
+        [&](std::uint32_t known) { return hash_of(triangle_of(entries_[known])); });
     if (number == entries_.size())
-        entries_.push_back({&triangle, 0});
+        entries_.push_back(added);
     return entries_[number];
 }
 
@@ -74,44 +75,42 @@ void EmittedDifference::begin(std::uint32_t base) {
     expected_alone_.clear();
     table_.clear(offsets_[base + 1] - offsets_[base]);
     for (std::uint32_t i = offsets_[base]; i < offsets_[base + 1]; ++i)
-        ++entry_of(mesh_.triangles[order_[i]]).surplus;
+        ++entry_of(mesh_.triangles[order_[i]], {order_[i], true, 0}).surplus;
 }
 
 void EmittedDifference::expect(const EmittedTriangle& triangle) {
-    Entry& entry = entry_of(triangle);
-    if (entry.triangle == &triangle) {  // no equal triangle was emitted
+    const std::size_t known = entries_.size();
+    Entry& entry = entry_of(triangle, {static_cast<std::uint32_t>(expected_alone_.size()), false, 0});
+    if (entries_.size() > known)
         expected_alone_.push_back(triangle);
-        entry.triangle = &expected_alone_.back();
-    }
     --entry.surplus;
 }
 
 void EmittedDifference::end() {
-    std::vector<const EmittedTriangle*> missing, extra;
+    std::vector<EmittedTriangle> missing, extra;
     for (const Entry& entry : entries_) {
-        for (std::int64_t n = entry.surplus; n > 0; --n)
-            extra.push_back(entry.triangle);
-        for (std::int64_t n = entry.surplus; n < 0; ++n)
-            missing.push_back(entry.triangle);
+        if (entry.surplus == 0)
+            continue;
+        auto& list = entry.surplus > 0 ? extra : missing;
+        list.insert(list.end(), static_cast<std::size_t>(std::abs(entry.surplus)), triangle_of(entry));
     }
     for (auto* const list : {&missing, &extra})
-        std::stable_sort(list->begin(), list->end(), [](const EmittedTriangle* a, const EmittedTriangle* b) {
-            return place_of(*a) < place_of(*b);
-        });
+        std::stable_sort(list->begin(), list->end(),
+                         [](const EmittedTriangle& a, const EmittedTriangle& b) { return place_of(a) < place_of(b); });
     auto wanted = missing.begin();
     auto there = extra.begin();
     while (wanted != missing.end() || there != extra.end()) {
         const bool no_more = there == extra.end();
-        if (no_more || (wanted != missing.end() && place_of(**wanted) < place_of(**there))) {
+        if (no_more || (wanted != missing.end() && place_of(*wanted) < place_of(*there))) {
             ++missing_;
-            note("a triangle is missing", **wanted++);
-        } else if (wanted == missing.end() || place_of(**there) < place_of(**wanted)) {
+            note("a triangle is missing", *wanted++);
+        } else if (wanted == missing.end() || place_of(*there) < place_of(*wanted)) {
             ++extra_;
-            note("an extra triangle", **there++);
+            note("an extra triangle", *there++);
         } else {
             if (first_.empty())
-                first_ = fmt::format("base triangle {}: a triangle differs: {}; expected {}", (*there)->base,
-                                     triangle_text(**there, formats_), triangle_text(**wanted, formats_));
+                first_ = fmt::format("base triangle {}: a triangle differs: {}; expected {}", there->base,
+                                     triangle_text(*there, formats_), triangle_text(*wanted, formats_));
             ++differing_;
             ++wanted;
             ++there;

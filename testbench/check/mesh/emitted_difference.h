@@ -1,7 +1,6 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <string>
 #include <vector>
 
@@ -32,11 +31,17 @@ class EmittedDifference {
     const std::string& first() const { return first_; }
 
   private:
+    /// Equal triangles.
     struct Entry {
-        const EmittedTriangle* triangle;
+        std::uint32_t triangle;  ///< index of one of them, among the emitted ones or, if there is none, the expected
+        bool emitted;
         std::int64_t surplus;  ///< emitted minus expected
     };
-    Entry& entry_of(const EmittedTriangle& triangle);
+    EmittedTriangle triangle_of(const Entry& entry) const {
+        return entry.emitted ? mesh_.triangles[entry.triangle] : expected_alone_[entry.triangle];
+    }
+    /// `added`: the entry if there is none of an equal triangle.
+    Entry& entry_of(const EmittedTriangle& triangle, const Entry& added);
     void note(const char* what, const EmittedTriangle& triangle);
 
     const EmittedMesh& mesh_;
@@ -45,7 +50,7 @@ class EmittedDifference {
     std::vector<std::uint32_t> offsets_;  // start of each base triangle's part
     DistinctTable table_;
     std::vector<Entry> entries_;
-    std::deque<EmittedTriangle> expected_alone_;
+    std::vector<EmittedTriangle> expected_alone_;
     std::uint64_t missing_ = 0, extra_ = 0, differing_ = 0;
     std::string first_;
 };

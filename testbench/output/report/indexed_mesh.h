@@ -13,17 +13,13 @@ namespace tessera {
 /// The triangles of an emitted mesh that were not culled, with shared vertices, as in a file. Indices only; the mesh
 /// itself is not copied.
 struct IndexedMesh {
-    /// A vertex: a triangle's corner. Two corners are one vertex if they agree in P, P', N' and t. In order of first
-    /// use.
-    struct Vertex {
-        std::uint32_t triangle;
-        std::uint32_t corner;
-    };
     struct Triangle {
         std::uint32_t triangle;  ///< its index in the emitted mesh
         std::array<std::uint32_t, 3> vertices;
     };
-    std::vector<Vertex> vertices;
+    /// Indices of corners (EmittedTriangles::corners), in the order of their first use. Two corners are one vertex if
+    /// they agree in P, P', N' and t.
+    std::vector<std::uint32_t> vertices;
     std::vector<Triangle> triangles;
 
     /// ResourceError beyond 700 million triangles.

@@ -28,27 +28,25 @@ void keep_distinct(std::vector<std::uint64_t>& hashes) {
 
 MeshCounts count_mesh(const EmittedMesh& mesh) {
     MeshCounts counts;
-    std::vector<std::uint64_t> hashes;
-    hashes.reserve(3 * mesh.triangles.size());
-    for (const EmittedTriangle& triangle : mesh.triangles)
-        for (const EmittedTriangle::Corner& corner : triangle.corners)
-            hashes.push_back(vertex_hash(corner));
-    keep_distinct(hashes);
-    counts.vertices = hashes.size();
-    counts.inserted_vertices = static_cast<std::uint64_t>(
-        std::count_if(hashes.begin(), hashes.end(), [](std::uint64_t hash) { return (hash & 1) != 0; }));
-
-    hashes.clear();
-    for (const EmittedTriangle& triangle : mesh.triangles) {
-        const std::uint64_t corners[] = {vertex_hash(triangle.corners[0]), vertex_hash(triangle.corners[1]),
-                                         vertex_hash(triangle.corners[2])};
+    std::vector<std::uint64_t> vertices;
+    vertices.reserve(mesh.triangles.corners().size());
+    for (const EmittedTriangle::Corner& corner : mesh.triangles.corners())
+        vertices.push_back(vertex_hash(corner));
+    std::vector<std::uint64_t> edges;
+    edges.reserve(3 * mesh.triangles.size());
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        const auto& corners = mesh.triangles.corner_indices(t);
         for (std::size_t k = 0; k < 3; ++k) {
-            const auto [low, high] = std::minmax(corners[k], corners[(k + 1) % 3]);
-            hashes.push_back(mix_hash(mix_hash(0, low), high));
+            const auto [low, high] = std::minmax(vertices[corners[k]], vertices[corners[(k + 1) % 3]]);
+            edges.push_back(mix_hash(mix_hash(0, low), high));
         }
     }
-    keep_distinct(hashes);
-    counts.edges = hashes.size();
+    keep_distinct(edges);
+    counts.edges = edges.size();
+    keep_distinct(vertices);
+    counts.vertices = vertices.size();
+    counts.inserted_vertices = static_cast<std::uint64_t>(
+        std::count_if(vertices.begin(), vertices.end(), [](std::uint64_t hash) { return (hash & 1) != 0; }));
     return counts;
 }
 

@@ -65,19 +65,17 @@ void write_obj(const std::filesystem::path& path, const EmittedMesh& mesh, const
                     "#   generation: of its youngest vertex, 0 for a base triangle\n"),
         indexed.vertices.size(), indexed.triangles.size(),
         mesh.has_highlight_splits() ? " highlight (Highlight Test alone)," : "");
-    const auto corner = [&](const IndexedMesh::Vertex& v) -> const EmittedTriangle::Corner& {
-        return mesh.triangles[v.triangle].corners[v.corner];
-    };
-    for (const auto& v : indexed.vertices) {
-        const glm::dvec3 p = units.position(corner(v).displaced);
+    const std::vector<EmittedTriangle::Corner>& corners = mesh.triangles.corners();
+    for (const std::uint32_t vertex : indexed.vertices) {
+        const glm::dvec3 p = units.position(corners[vertex].displaced);
         put(FMT_COMPILE("v {} {} {}\n"), p.x, p.y, p.z);
     }
-    for (const auto& v : indexed.vertices) {
-        const glm::vec2 t(units.texture(corner(v).texture));
+    for (const std::uint32_t vertex : indexed.vertices) {
+        const glm::vec2 t(units.texture(corners[vertex].texture));
         put(FMT_COMPILE("vt {} {}\n"), t.x, t.y);
     }
-    for (const auto& v : indexed.vertices) {
-        const glm::vec3 n = units.normal(corner(v).displaced_normal);
+    for (const std::uint32_t vertex : indexed.vertices) {
+        const glm::vec3 n = units.normal(corners[vertex].displaced_normal);
         put(FMT_COMPILE("vn {} {} {}\n"), n.x, n.y, n.z);
     }
     const Grouped grouped = group(mesh, indexed);

@@ -81,8 +81,8 @@ void write_ply(const std::filesystem::path& path, const EmittedMesh& mesh, const
                     highlight ? "; 32 is added where the Highlight Test was true" : "", highlight ? "," : " or",
                     highlight ? " or Highlight" : "", indexed.vertices.size(), indexed.triangles.size()));
     Record record(file);
-    for (const IndexedMesh::Vertex& v : indexed.vertices) {
-        const auto& corner = mesh.triangles[v.triangle].corners[v.corner];
+    for (const std::uint32_t vertex : indexed.vertices) {
+        const EmittedTriangle::Corner& corner = mesh.triangles.corners()[vertex];
         const glm::dvec3 position = units.position(corner.displaced);
         const glm::vec3 normal = units.normal(corner.displaced_normal);
         const glm::dvec2 texture = units.texture(corner.texture);

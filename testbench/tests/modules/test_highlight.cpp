@@ -5,6 +5,7 @@
 #include "testbench/benchmark/gouraud_error.h"
 #include "testbench/tests/support/case_table.h"
 #include "testbench/tests/support/checked_run.h"
+#include "testbench/tests/support/edited_mesh.h"
 #include "testbench/tests/support/job_settings.h"
 
 // The whole machine with a Highlight Test: its meshes, its cycles, and its effect.
@@ -182,10 +183,10 @@ TEST_CASE("per-vertex against per-texel light: a flat mesh has no error, one wit
     CHECK(none.texels == none.highlight_texels);
     CHECK(none.largest < 1e-9);
     // With corners lit as if they faced away every texel is off by the whole light.
-    EmittedMesh dark = bare_mesh(flat);
-    for (EmittedTriangle& triangle : dark.triangles)
+    const EmittedMesh dark = changed(bare_mesh(flat), [](EmittedTriangle& triangle) {
         for (auto& corner : triangle.corners)
             corner.displaced_normal = {1 << 14, 0, 0};
+    });
     const GouraudError all = measure_gouraud(dark, flat, GoldenInputs(flat), highlight);
     CHECK(all.rms == Approx(1));
     CHECK(all.highlight_rms == Approx(1));

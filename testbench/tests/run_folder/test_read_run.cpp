@@ -38,7 +38,7 @@ EmittedMesh small_mesh() {
     b.stopped_by = 8;
     EmittedTriangle culled = a;
     culled.culled = true;
-    mesh.triangles = {a, culled, b};
+    mesh.triangles = std::vector{a, culled, b};
     return mesh;
 }
 

@@ -20,6 +20,7 @@
 #include "testbench/output/report/conformance_report.h"
 #include "testbench/tests/check/conformance/setup_run.h"
 #include "testbench/tests/support/case_table.h"
+#include "testbench/tests/support/edited_mesh.h"
 #include "testbench/tests/support/job_settings.h"
 
 using namespace tessera;
@@ -521,15 +522,13 @@ TEST_CASE("the golden run is judged by its triangles, the distance of the surfac
         CHECK_THAT(conformance_text(checks), Contains("End to end: FAILED"));
         return !result.passed();
     };
-    EmittedMesh fewer = mesh;
-    fewer.triangles.resize(fewer.triangles.size() * 97 / 100);
-    CHECK(failed(compare(fewer, 1)));
+    CHECK(failed(compare(first_of(mesh, mesh.triangles.size() * 97 / 100), 1)));
 
     // Lifted by 10 LSB, of which rounding explains 6.9; on slopes the distance is less.
-    EmittedMesh lifted = mesh;
-    for (EmittedTriangle& triangle : lifted.triangles)
+    const EmittedMesh lifted = changed(mesh, [](EmittedTriangle& triangle) {
         for (auto& corner : triangle.corners)
             corner.displaced.z += 10;
+    });
     const EndToEndResult off = compare(lifted, 1);
     CHECK(off.more_triangles() == right.more_triangles());
     CHECK(off.farther() > 50);
@@ -537,15 +536,15 @@ TEST_CASE("the golden run is judged by its triangles, the distance of the surfac
     CHECK(failed(off));
 
     // A few triangles, farther away than any displacement puts them.
-    EmittedMesh thrown = mesh;
-    for (std::size_t k = 0; k < thrown.triangles.size(); k += 400)
-        thrown.triangles[k].corners[0].displaced.z += 6 * run.setup.registers.displacement.scale;
-    const EndToEndResult spikes = compare(thrown, 1);
+    std::vector<EmittedTriangle> thrown = list_of(mesh);
+    for (std::size_t k = 0; k < thrown.size(); k += 400)
+        thrown[k].corners[0].displaced.z += 6 * run.setup.registers.displacement.scale;
+    const EndToEndResult spikes = compare({thrown}, 1);
     CHECK(spikes.farther() < 1);
     CHECK(failed(spikes));
 
     // The mesh's size limits golden's run; one stopped early is repeated up to there, on any number of threads.
-    mesh.triangles.resize(10);
+    mesh = first_of(mesh, 10);
     const EndToEndResult stopped = compare(mesh, 1000);
     CHECK(stopped.golden_triangles < 1040);
     for (const std::size_t threads : {1U, 2U})

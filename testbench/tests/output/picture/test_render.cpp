@@ -315,13 +315,12 @@ TEST_CASE("A run's mesh is read back in model units, each vertex once") {
         corner.displaced_normal = {0, 0, 1 << 14};
         return corner;
     };
-    EmittedMesh run;
-    run.triangles.resize(2);
-    run.triangles[0].corners = {at(0, 0), at(8, 0), at(8, 4)};
-    run.triangles[1].corners = {at(0, 0), at(8, 4), at(-8, 4)};
-    run.triangles[1].corners[2].generation = 5;
-    run.triangles[1].split_by = datapath::normal_bit | datapath::summed_height_bit;
-    const RenderMesh mesh = make_render_mesh(run, setup);
+    EmittedTriangle first, second;
+    first.corners = {at(0, 0), at(8, 0), at(8, 4)};
+    second.corners = {at(0, 0), at(8, 4), at(-8, 4)};
+    second.corners[2].generation = 5;
+    second.split_by = datapath::normal_bit | datapath::summed_height_bit;
+    const RenderMesh mesh = make_render_mesh({std::vector{first, second}}, setup);
     REQUIRE(mesh.triangles.size() == 2);
     CHECK(mesh.positions.size() == 4);
     const auto corner = [&](std::size_t triangle, std::size_t k) {

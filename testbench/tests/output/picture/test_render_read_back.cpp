@@ -5,6 +5,7 @@
 #include "testbench/output/picture/render_mesh.h"
 #include "testbench/output/report/ply_writer.h"
 #include "testbench/run_folder/ply_reader.h"
+#include "testbench/tests/support/edited_mesh.h"
 #include "testbench/tests/support/test_folder.h"
 
 using namespace tessera;
@@ -100,9 +101,7 @@ TEST_CASE("render: positions keep full single precision for any position of the 
 
 TEST_CASE("render: a run without triangles gives an empty mesh") {
     const MachineSetup setup = some_setup({1, 2, 3}, 1);
-    EmittedMesh run = some_mesh();
-    for (EmittedTriangle& triangle : run.triangles)
-        triangle.culled = true;
+    const EmittedMesh run = changed(some_mesh(), [](EmittedTriangle& triangle) { triangle.culled = true; });
     for (const RenderMesh& mesh : {make_render_mesh(run, setup), make_render_mesh(RecordedMesh{})}) {
         CHECK(mesh.triangles.empty());
         CHECK(mesh.positions.empty());

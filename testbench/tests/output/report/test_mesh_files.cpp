@@ -18,6 +18,7 @@
 #include "testbench/common/atomic_file.h"
 #include "testbench/output/report/obj_writer.h"
 #include "testbench/output/report/ply_writer.h"
+#include "testbench/tests/support/edited_mesh.h"
 #include "testbench/tests/support/emitted_mesh_maker.h"
 #include "testbench/tests/support/refusals.h"
 #include "testbench/tests/support/test_folder.h"
@@ -65,13 +66,12 @@ struct Sample {
                 return datapath::absolute_difference(a.texture.u, b.texture.u) > a.texture.u / 4 + 9000;
             },
             [](const datapath::TexCoord& t) { return static_cast<std::int32_t>((t.u ^ t.v) % 977); }, 12};
-        mesh = maker.make(base);
-        for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-            auto& t = mesh.triangles[i];
+        std::size_t i = 0;
+        mesh = changed(maker.make(base), [&](EmittedTriangle& t) {
             t.split_by = static_cast<std::uint8_t>(t.corners[2].generation == 0 ? 0 : 1 + i % 3);
             t.stopped_by = static_cast<std::uint8_t>(4 * (i % 8));
-            t.culled = i % 11 == 5;
-        }
+            t.culled = i++ % 11 == 5;
+        });
         mesh.sort();
     }
 };
@@ -274,8 +274,7 @@ TEST_CASE("writing twice gives the same bytes in any locale") {
 TEST_CASE("a mesh with every triangle culled is an empty, valid file") {
     const TestFolder folder;
     Sample sample;
-    for (auto& t : sample.mesh.triangles)
-        t.culled = true;
+    sample.mesh = changed(sample.mesh, [](EmittedTriangle& t) { t.culled = true; });
     write_ply(folder / "a.ply", sample.mesh, sample.units);
     write_obj(folder / "a.obj", sample.mesh, sample.units);
     CHECK(read_all(folder / "a.ply").find("element vertex 0\n") != std::string::npos);
@@ -364,9 +363,10 @@ TEST_CASE("an atomic file appears complete or not at all") {
 TEST_CASE("a full disk leaves no file and is reported") {
     const TestFolder folder;
     Sample sample;
-    const auto once = sample.mesh.triangles;
+    const std::vector<EmittedTriangle> once = list_of(sample.mesh);
     for (int i = 0; i < 50; ++i)
-        sample.mesh.triangles.insert(sample.mesh.triangles.end(), once.begin(), once.end());
+        for (const EmittedTriangle& triangle : once)
+            sample.mesh.triangles.push_back(triangle);
     write_file(folder / "old.ply", "old");
     const auto require_failure = [&](const fs::path& path, auto&& write) {
         const FileSizeLimit limit(10000);
