@@ -55,7 +55,7 @@ class InBackground {
     }
 
   private:
-    static constexpr std::size_t block_items = 128;
+    static constexpr std::size_t block_items = 512;
 
     void end() {
         if (!taker_.joinable())

@@ -73,31 +73,42 @@ BoxHierarchy::BoxHierarchy(std::size_t count, const std::function<Box(std::size_
     const int axis_bits = std::min(21, (64 - index_bits) / 3);
     const double size = std::ldexp(1.0, axis_bits);
     const glm::dvec3 extent = glm::max(centres.high - centres.low, std::numeric_limits<double>::min());
-    std::vector<std::uint64_t> keys;
-    keys.reserve(some);
-    for (std::size_t k = 0; k < count; ++k)
-        if (const Box b = box(k); !b.is_empty()) {
-            const glm::dvec3 cell = glm::min((centre_of(b) - centres.low) / extent * size, size - 1);
-            std::uint64_t code = 0;
-            for (int axis = 0; axis < 3; ++axis)
-                code |= spread(static_cast<std::uint64_t>(cell[axis])) << axis;
-            keys.push_back(code << index_bits | k);
-        }
-    std::sort(keys.begin(), keys.end());
-    const std::uint64_t index_mask = (std::uint64_t{1} << index_bits) - 1;
     order_.reserve(some);
-    for (const std::uint64_t key : keys)
-        order_.push_back(static_cast<std::uint32_t>(key & index_mask));
+    {
+        std::vector<std::uint64_t> keys;
+        keys.reserve(some);
+        for (std::size_t k = 0; k < count; ++k)
+            if (const Box b = box(k); !b.is_empty()) {
+                const glm::dvec3 cell = glm::min((centre_of(b) - centres.low) / extent * size, size - 1);
+                std::uint64_t code = 0;
+                for (int axis = 0; axis < 3; ++axis)
+                    code |= spread(static_cast<std::uint64_t>(cell[axis])) << axis;
+                keys.push_back(code << index_bits | k);
+            }
+        std::sort(keys.begin(), keys.end());
+        const std::uint64_t index_mask = (std::uint64_t{1} << index_bits) - 1;
+        for (const std::uint64_t key : keys)
+            order_.push_back(static_cast<std::uint32_t>(key & index_mask));
+    }
 
-    const auto add_level = [&](std::size_t children, const auto& box_of) {
-        std::vector<Node> level((children + lanes - 1) / lanes);
-        for (std::size_t k = 0; k < children; ++k)
-            level[k / lanes].set(static_cast<std::uint32_t>(k % lanes), box_of(k));
-        levels_.push_back(std::move(level));
+    // The boxes are requested in the caller's order, which is faster than in Morton order.
+    std::vector<std::uint32_t> place(count);
+    for (std::size_t k = 0; k < some; ++k)
+        place[order_[k]] = static_cast<std::uint32_t>(k);
+    const auto level_of = [](std::size_t children) { return std::vector<Node>((children + lanes - 1) / lanes); };
+    const auto set = [](std::vector<Node>& level, std::size_t child, const Box& b) {
+        level[child / lanes].set(static_cast<std::uint32_t>(child % lanes), b);
     };
-    add_level(some, [&](std::size_t k) { return box(order_[k]); });
-    while (levels_.back().size() > 1)
-        add_level(levels_.back().size(), [&](std::size_t k) { return levels_.back()[k].box(); });
+    levels_.push_back(level_of(some));
+    for (std::size_t k = 0; k < count; ++k)
+        if (const Box b = box(k); !b.is_empty())
+            set(levels_.back(), place[k], b);
+    while (levels_.back().size() > 1) {
+        std::vector<Node> level = level_of(levels_.back().size());
+        for (std::size_t k = 0; k < levels_.back().size(); ++k)
+            set(level, k, levels_.back()[k].box());
+        levels_.push_back(std::move(level));
+    }
 }
 
 float BoxHierarchy::squared_limit(double radius) {

@@ -23,19 +23,10 @@ class TriangleSoup {
 
     void reserve(std::size_t triangles) { triangles_.reserve(triangles); }
     void push_back(const Corners& triangle) {
-        triangles_.push_back({number_of(triangle[0]), number_of(triangle[1]), number_of(triangle[2])});
+        push_back({vertex(triangle[0]), vertex(triangle[1]), vertex(triangle[2])});
     }
-    std::size_t size() const { return triangles_.size(); }
-    bool empty() const { return triangles_.empty(); }
-    Corners operator[](std::size_t k) const {
-        const auto& [a, b, c] = triangles_[k];
-        return {vertices_[a], vertices_[b], vertices_[c]};
-    }
-    /// In the order of their first use.
-    const std::vector<glm::dvec3>& vertices() const { return vertices_; }
-
-  private:
-    std::uint32_t number_of(const glm::dvec3& p) {
+    /// The index of a position, which is added if it is new.
+    std::uint32_t vertex(const glm::dvec3& p) {
         const std::uint32_t number = table_.number_of(
             point_hash(p), [&](std::uint32_t v) { return vertices_[v] == p; },
             [&](std::uint32_t v) { return point_hash(vertices_[v]); });
@@ -43,7 +34,17 @@ class TriangleSoup {
             vertices_.push_back(p);
         return number;
     }
+    void push_back(const std::array<std::uint32_t, 3>& vertices) { triangles_.push_back(vertices); }
+    std::size_t size() const { return triangles_.size(); }
+    bool empty() const { return triangles_.empty(); }
+    Corners operator[](std::size_t k) const {
+        const auto& [a, b, c] = triangles_[k];
+        return {vertices_[a], vertices_[b], vertices_[c]};
+    }
+    /// In the order in which they were added.
+    const std::vector<glm::dvec3>& vertices() const { return vertices_; }
 
+  private:
     std::vector<glm::dvec3> vertices_;
     std::vector<std::array<std::uint32_t, 3>> triangles_;
     DistinctTable table_;

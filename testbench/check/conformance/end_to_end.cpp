@@ -39,6 +39,21 @@ GoldenSurface run_golden(const BaseTriangles& base, const golden::Map& map, cons
     return surface;
 }
 
+/// P' of all triangles.
+TriangleSoup soup_of(const EmittedMesh& mesh, const Dequantise& dequantise) {
+    TriangleSoup soup;
+    soup.reserve(mesh.triangles.size());
+    std::vector<std::uint32_t> vertices;
+    vertices.reserve(mesh.triangles.corners().size());
+    for (const EmittedTriangle::Corner& corner : mesh.triangles.corners())
+        vertices.push_back(soup.vertex(dequantise.position(corner.displaced)));
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        const auto& [a, b, c] = mesh.triangles.corner_indices(t);
+        soup.push_back({vertices[a], vertices[b], vertices[c]});
+    }
+    return soup;
+}
+
 EndToEndResult compare(const MachineSetup& setup, const GoldenSurface& golden, const EmittedMesh& hardware,
                        const EndToEndResult::Allowed& allowed, const Told& progress) {
     EndToEndResult result;
@@ -52,14 +67,7 @@ EndToEndResult compare(const MachineSetup& setup, const GoldenSurface& golden, c
     if (result.bound_hit)
         return result;
 
-    const Dequantise dequantise(setup.registers.formats);
-    TriangleSoup hardware_soup;
-    hardware_soup.reserve(hardware.triangles.size());
-    for (const EmittedTriangle& t : hardware.triangles)
-        hardware_soup.push_back({dequantise.position(t.corners[0].displaced),
-                                 dequantise.position(t.corners[1].displaced),
-                                 dequantise.position(t.corners[2].displaced)});
-
+    const TriangleSoup hardware_soup = soup_of(hardware, Dequantise(setup.registers.formats));
     const auto measure = [&](const TriangleSoup& from, const TriangleSoup& to) {
         const double lsb = std::ldexp(1.0, setup.registers.formats.position.fraction);
         const double model = 1 / setup.model_scale.scale;
