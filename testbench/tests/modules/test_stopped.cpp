@@ -8,6 +8,7 @@
 #include "testbench/tests/support/case_table.h"
 #include "testbench/tests/support/job_settings.h"
 #include "testbench/tests/support/timed_checks.h"
+#include "testbench/tests/support/timed_modules.h"
 
 // A machine that is stopped in any cycle: a unit describes its contents, in complete phrases, exactly while it holds
 // something, and the pipeline's overall state is correct.
