@@ -3,7 +3,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <iterator>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -100,19 +99,12 @@ class EmittedTriangles {
 
     class Iterator {
       public:
-        using iterator_category = std::input_iterator_tag;
-        using value_type = EmittedTriangle;
-        using difference_type = std::ptrdiff_t;
-        using pointer = const EmittedTriangle*;
-        using reference = EmittedTriangle;
-
         Iterator(const EmittedTriangles& triangles, std::size_t k) : triangles_(&triangles), k_(k) {}
         EmittedTriangle operator*() const { return (*triangles_)[k_]; }
         Iterator& operator++() {
             ++k_;
             return *this;
         }
-        friend bool operator==(const Iterator& a, const Iterator& b) { return a.k_ == b.k_; }
         friend bool operator!=(const Iterator& a, const Iterator& b) { return a.k_ != b.k_; }
 
       private:
@@ -191,9 +183,10 @@ struct EmittedMesh {
 
     /// Whether a triangle was split with the Highlight Test true; otherwise files do not mention the test.
     bool has_highlight_splits() const {
-        return std::any_of(triangles.begin(), triangles.end(), [](const EmittedTriangle& triangle) {
-            return (triangle.split_by & datapath::highlight_bit) != 0;
-        });
+        for (const EmittedTriangle& triangle : triangles)
+            if ((triangle.split_by & datapath::highlight_bit) != 0)
+                return true;
+        return false;
     }
 
     /// So that runs that emit the same triangles in any order write identical files.

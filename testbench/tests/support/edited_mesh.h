@@ -8,7 +8,10 @@ namespace tessera {
 
 /// A mesh's triangles, to be edited; a list is converted to a mesh's triangles.
 inline std::vector<EmittedTriangle> list_of(const EmittedMesh& mesh) {
-    return {mesh.triangles.begin(), mesh.triangles.end()};
+    std::vector<EmittedTriangle> triangles;
+    for (const EmittedTriangle& triangle : mesh.triangles)
+        triangles.push_back(triangle);
+    return triangles;
 }
 
 /// Applies `change` to every triangle.
