@@ -29,17 +29,19 @@ void MemoryPort::check_response(const MemoryRequest& request) const {
     SC_REPORT_ERROR("tessera/memory", message.str().c_str());
 }
 
-std::uint64_t MemoryPort::read_by_transaction(std::uint64_t address, sc_core::sc_time& delay) {
-    ++reads_;
-    unsigned char data[sizeof(std::uint64_t)] = {};
-    MemoryRequest request{tlm::TLM_READ_COMMAND, 1, entry_bytes_, {address}, data};
-    socket->b_transport(request, delay);
-    check_response(request);
-    if (use_direct_memory_ && request.dmi_allowed && direct_bytes_ == 0)
-        ask_for_direct_memory(request);
-    std::uint64_t entry = 0;
-    std::memcpy(&entry, data, entry_bytes_);
-    return entry;
+void MemoryPort::read_by_transactions(const std::uint64_t* addresses, unsigned count, std::uint64_t* entries,
+                                      sc_core::sc_time& delay) {
+    for (unsigned k = 0; k < count; ++k) {
+        ++reads_;
+        unsigned char data[sizeof(std::uint64_t)] = {};
+        MemoryRequest request{tlm::TLM_READ_COMMAND, 1, entry_bytes_, {addresses[k]}, data};
+        socket->b_transport(request, delay);
+        check_response(request);
+        if (use_direct_memory_ && request.dmi_allowed && direct_bytes_ == 0)
+            ask_for_direct_memory(request);
+        entries[k] = 0;
+        std::memcpy(&entries[k], data, entry_bytes_);
+    }
 }
 
 void MemoryPort::ask_for_direct_memory(MemoryRequest& request) {
@@ -50,7 +52,8 @@ void MemoryPort::ask_for_direct_memory(MemoryRequest& request) {
     direct_start_ = dmi.get_start_address();
     const std::uint64_t span = dmi.get_end_address() - dmi.get_start_address() + 1;
     direct_bytes_ = span >= sizeof(std::uint64_t) ? span - sizeof(std::uint64_t) + 1 : 0;
-    direct_time_ = dmi.get_read_latency();
+    for (std::size_t k = 1; k < direct_times_.size(); ++k)
+        direct_times_[k] = direct_times_[k - 1] + dmi.get_read_latency();
 }
 
 void MemoryPort::clocked_by(CycleScheduler& clock, CycleProcess& unit, std::size_t most_under_way,

@@ -1,5 +1,6 @@
 #pragma once
 #include <tlm_utils/simple_initiator_socket.h>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -27,45 +28,29 @@ class MemoryPort {
     /// entry_bytes: at least 1; at most 8 for read() and entry().
     MemoryPort(const char* name, std::size_t entry_bytes, bool use_direct_memory);
 
-    /// Several consecutive reads. Reads through DMI are counted and timed together, on destruction.
-    class Burst {
-      public:
-        Burst(MemoryPort& port, sc_core::sc_time& delay)
-            : port_(port),
-              delay_(delay),
-              direct_(port.direct_),
-              start_(port.direct_start_),
-              bytes_(port.direct_bytes_),
-              mask_(port.mask_) {}
-        ~Burst() {
-            port_.reads_ += direct_reads_;
-            delay_ += sc_core::sc_time::from_value(direct_reads_ * port_.direct_time_.value());
-        }
-        Burst(const Burst&) = delete;
-        Burst& operator=(const Burst&) = delete;
-
-        /// The entry at a byte address, zero-extended.
-        std::uint64_t read(std::uint64_t address) {
-            if (address - start_ >= bytes_)
-                return port_.read_by_transaction(address, delay_);
-            ++direct_reads_;
+    /// Functional mode: the entries at these byte addresses, zero-extended. Adds the memory's read time to `delay` for
+    /// each of them. count: at most most_rectangle_entries.
+    void read(const std::uint64_t* addresses, unsigned count, std::uint64_t* entries, sc_core::sc_time& delay) {
+        const unsigned char* const direct = direct_;
+        const std::uint64_t start = direct_start_, bytes = direct_bytes_, mask = mask_;
+        for (unsigned k = 0; k < count; ++k) {
+            const std::uint64_t offset = addresses[k] - start;
+            if (offset >= bytes) {
+                read_by_transactions(addresses, count, entries, delay);
+                return;
+            }
             std::uint64_t entry = 0;
-            std::memcpy(&entry, direct_ + (address - start_), sizeof entry);
-            return entry & mask_;
+            std::memcpy(&entry, direct + offset, sizeof entry);
+            entries[k] = entry & mask;
         }
-
-      private:
-        MemoryPort& port_;
-        sc_core::sc_time& delay_;
-        const unsigned char* direct_;
-        std::uint64_t start_;
-        std::uint64_t bytes_;
-        std::uint64_t mask_;
-        std::uint64_t direct_reads_ = 0;
-    };
-
-    /// The entry at a byte address, zero-extended. Adds the memory's read time to `delay`.
-    std::uint64_t read(std::uint64_t address, sc_core::sc_time& delay) { return Burst(*this, delay).read(address); }
+        reads_ += count;
+        delay += direct_times_[count];
+    }
+    std::uint64_t read(std::uint64_t address, sc_core::sc_time& delay) {
+        std::uint64_t entry = 0;
+        read(&address, 1, &entry, delay);
+        return entry;
+    }
 
     /// Timed mode. most_under_way: requests that may be unanswered at a time; most_entries: of one of them.
     void clocked_by(CycleScheduler& clock, CycleProcess& unit, std::size_t most_under_way,
@@ -136,7 +121,8 @@ class MemoryPort {
         std::vector<unsigned char> data;
     };
 
-    std::uint64_t read_by_transaction(std::uint64_t address, sc_core::sc_time& delay);
+    void read_by_transactions(const std::uint64_t* addresses, unsigned count, std::uint64_t* entries,
+                              sc_core::sc_time& delay);
     void check_response(const MemoryRequest& request) const;
     void ask_for_direct_memory(MemoryRequest& request);
     void invalidate_direct_mem_ptr(sc_dt::uint64, sc_dt::uint64) { direct_bytes_ = 0; }
@@ -152,7 +138,7 @@ class MemoryPort {
     std::uint64_t direct_start_ = 0;
     // Addresses at which eight bytes may be loaded; the table's last few entries are read by transaction. 0: no DMI.
     std::uint64_t direct_bytes_ = 0;
-    sc_core::sc_time direct_time_;
+    std::array<sc_core::sc_time, datapath::most_rectangle_entries + 1> direct_times_;  // by number of entries
 
     CycleScheduler* clock_ = nullptr;
     CycleProcess* unit_ = nullptr;

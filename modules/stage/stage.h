@@ -75,7 +75,7 @@ class Stage : public Unit {
     template <class Figure>
     std::uint64_t over_ports(Figure figure) const;
     void b_transport(In& item, sc_core::sc_time& delay);
-    Out read_and_process(const In& item, sc_core::sc_time& delay);
+    void read_entries(const In& item, Entries& entries, sc_core::sc_time& delay);
     void start(std::uint64_t cycle);
     void take_answers(std::uint64_t cycle);
 

@@ -117,30 +117,28 @@ void Stage<In, Out>::b_transport(In& item, sc_core::sc_time& delay) {
                             (std::string(name()) + ": an item arrived before the data that it waits for").c_str());
         delay = std::max(delay, may_start_after(item));
     }
-    Out result = read_and_process(item, delay);
+    Entries entries;
+    if (reads_tables())
+        read_entries(item, entries, delay);
+    Out result = process(item, entries);
     delay += latency_;
     machinery_->fork.transport(result, delay);
 }
 
 template <class In, class Out>
-Out Stage<In, Out>::read_and_process(const In& item, sc_core::sc_time& delay) {
-    Entries entries;
-    if (reads_tables()) {
-        Reads needed;
-        reads(item, needed);
-        if constexpr (is_part<In>) {
-            if (read_observer_ != nullptr)
-                read_observer_->read(item.tag.part, needed);
-        }
-        for (unsigned request = 0, entry = 0; request < needed.requests();) {
-            const unsigned port = needed.port(request);
-            MemoryPort::Burst burst(*machinery_->ports[port], delay);
-            for (; request < needed.requests() && needed.port(request) == port; ++request)
-                for (const unsigned end = entry + needed.count(request); entry < end; ++entry)
-                    entries[entry] = burst.read(needed.addresses()[entry]);
-        }
+void Stage<In, Out>::read_entries(const In& item, Entries& entries, sc_core::sc_time& delay) {
+    Reads needed;
+    reads(item, needed);
+    if constexpr (is_part<In>) {
+        if (read_observer_ != nullptr)
+            read_observer_->read(item.tag.part, needed);
     }
-    return process(item, entries);
+    unsigned entry = 0;
+    for (unsigned request = 0; request < needed.requests(); ++request) {
+        const unsigned count = needed.count(request);
+        machinery_->ports[needed.port(request)]->read(needed.addresses() + entry, count, &entries[entry], delay);
+        entry += count;
+    }
 }
 
 template <class In, class Out>
