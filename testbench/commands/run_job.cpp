@@ -42,11 +42,16 @@ namespace tessera {
 
 namespace {
 
-/// Passes a simulation's decided passes to a check that runs concurrently.
+/// Passes a simulation's decided passes to the checks that run concurrently; null: none.
 class PassesInBackground : public tlm::tlm_analysis_if<datapath::TrianglePass> {
   public:
-    explicit PassesInBackground(Scoreboard& check)
-        : passes_([&](const datapath::TrianglePass& pass) { check.write(pass); }) {}
+    PassesInBackground(Scoreboard* scoreboard, TransportCheck* work)
+        : passes_([scoreboard, work](const datapath::TrianglePass& pass) {
+              if (scoreboard != nullptr)
+                  scoreboard->write(pass);
+              if (work != nullptr)
+                  work->write(pass);
+          }) {}
 
     void write(const datapath::TrianglePass& pass) override { passes_.put(pass); }
     void finish() { passes_.finish(); }
@@ -76,40 +81,43 @@ Loaded load(const Job& asked) {
     return loaded;
 }
 
-void write_run_folder(const std::filesystem::path& folder, const Job& job, const MachineSetup& setup,
-                      const Simulation& simulation, const MeshCounts& counts, const Checks& checks,
-                      Progress& progress) {
-    progress.show("writing reports", 0.85);
+MeshUnits units_of(const MachineSetup& setup) {
+    return {setup.registers.formats, setup.registers.map, setup.model_scale.scale, setup.model_scale.centre};
+}
+
+void write_mesh_and_picture(const std::filesystem::path& folder, const Job& job, const MachineSetup& setup,
+                            const EmittedMesh& mesh) {
+    // An AtomicSet is for one thread at a time: the picture's file is written after these.
+    auto mesh_files = beside([&] {
+        if (job.output.ply)
+            write_ply(folder / "mesh.ply", mesh, units_of(setup));
+        if (job.output.obj)
+            write_obj(folder / "mesh.obj", mesh, units_of(setup));
+    });
+    std::string picture;
+    if (job.output.picture)
+        picture = encode_png(
+            render_views(make_render_mesh(mesh, setup), make_view(job.camera), {PictureView::overview}, {})
+                .front()
+                .image);
+    mesh_files.get();
+    if (job.output.picture)
+        write_file(folder / "picture.png", picture);
+}
+
+void write_reports(const std::filesystem::path& folder, const Job& job, const MachineSetup& setup,
+                   const Simulation& simulation, const MeshCounts& counts, const Checks& checks) {
     write_file(folder / "job.toml", dump_job(job, folder));
     const std::vector<Figure> figures = collect_statistics(setup, simulation, counts);
     write_file(folder / "statistics.json", statistics_json(figures));
     write_file(folder / "statistics.csv", statistics_csv(figures));
     write_file(folder / "conformance.txt", conformance_text(checks));
     write_file(folder / "conformance.json", conformance_json(checks));
-    const MeshUnits units{setup.registers.formats, setup.registers.map, setup.model_scale.scale,
-                          setup.model_scale.centre};
     if (job.mode == Mode::timed) {
         write_file(folder / "timing.txt", timing_text(simulation));
         write_file(folder / "queue_levels.csv",
                    queue_levels_csv(simulation.last_machine().pipeline.triangle_queue.history()));
     }
-    progress.show("mesh and picture", 0.87);
-    // An AtomicSet is for one thread at a time: the picture's file is written after these.
-    auto mesh_files = beside([&] {
-        if (job.output.ply)
-            write_ply(folder / "mesh.ply", simulation.monitor.mesh, units);
-        if (job.output.obj)
-            write_obj(folder / "mesh.obj", simulation.monitor.mesh, units);
-    });
-    std::string picture;
-    if (job.output.picture)
-        picture = encode_png(render_views(make_render_mesh(simulation.monitor.mesh, setup), make_view(job.camera),
-                                          {PictureView::overview}, {})
-                                 .front()
-                                 .image);
-    mesh_files.get();
-    if (job.output.picture)
-        write_file(folder / "picture.png", picture);
 }
 
 /// Names and windows of the traces; writes trace.fst if requested.
@@ -152,6 +160,11 @@ Ending run_once(const Job& asked, const Command& command, const std::string& nam
     const MachineSetup& setup = loaded.setup;
     const Job& job = inputs.resolved.job;
 
+    auto golden_made = beside([&] {
+        return job.check.golden || job.check.end_to_end
+                   ? std::make_unique<GoldenJob>(job, inputs.mesh, inputs.map, setup.model_scale, setup)
+                   : nullptr;
+    });
     std::optional<ReadCheckedUnits> checked_units;
     if (job.check.reads)
         checked_units.emplace();
@@ -160,17 +173,19 @@ Ending run_once(const Job& asked, const Command& command, const std::string& nam
                           checked_units ? &*checked_units : nullptr);
     std::optional<GoldenInputs> golden;
     std::unique_ptr<Scoreboard> scoreboard;
-    std::optional<PassesInBackground> passes;
     if (job.check.golden) {
         golden.emplace(setup);
         scoreboard = std::make_unique<Scoreboard>(setup.registers, *golden);
-        passes.emplace(*scoreboard);
-        simulation.observe_decisions(*passes);
     }
     std::unique_ptr<TransportCheck> work;
     if (job.check.work) {
         work = std::make_unique<TransportCheck>(setup.registers, setup.base_triangles);
-        observe(simulation, *work);
+        observe_finished(simulation, *work);
+    }
+    std::optional<PassesInBackground> passes;
+    if (scoreboard || work) {
+        passes.emplace(scoreboard.get(), work.get());
+        simulation.observe_decisions(*passes);
     }
     TexelBorders borders(setup.registers.formats);
     for (const auto& machine : simulation.machines)
@@ -191,9 +206,7 @@ Ending run_once(const Job& asked, const Command& command, const std::string& nam
     Checks checks;
     checks.allowed_flips = job.check.allowed_flips;
     checks.remarks = setup.remarks;
-    std::optional<GoldenJob> golden_job;
-    if (job.check.golden || job.check.end_to_end)
-        golden_job.emplace(job, inputs.mesh, inputs.map, setup.model_scale, setup);
+    const std::unique_ptr<GoldenJob> golden_job = golden_made.get();
     std::optional<GoldenRun> golden_run;
     if (job.check.end_to_end)
         golden_run.emplace(setup, *golden_job, received_triangles(setup, *golden_job),
@@ -221,6 +234,9 @@ Ending run_once(const Job& asked, const Command& command, const std::string& nam
         checks.conformance = scoreboard->result();
         golden.reset();  // 36 bytes per texel
     }
+    auto setup_result = beside([&] {
+        return golden_job ? std::optional<SetupResult>(check_setup(setup, *golden_job, simulation)) : std::nullopt;
+    });
     EmittedMesh& mesh = simulation.monitor.mesh;
     mesh.sort();
     auto mesh_counts = beside([&] { return count_mesh(mesh); });
@@ -233,10 +249,7 @@ Ending run_once(const Job& asked, const Command& command, const std::string& nam
         checks.reads = checked_units->result();
     checks.texel_borders =
         texel_borders_warning(borders.count(), job, setup.registers.map.width, setup.registers.map.height);
-    if (golden_job) {
-        progress.show("checking the set-up", 0.6);
-        checks.setup = check_setup(setup, *golden_job, simulation);
-    }
+    checks.setup = setup_result.get();
     if (golden_run) {
         // Golden's own run does not saturate, so with saturated values the meshes cannot be compared.
         const datapath::Saturations saturated = Totals(simulation).saturations;
@@ -247,11 +260,13 @@ Ending run_once(const Job& asked, const Command& command, const std::string& nam
                                 [&](double part) { progress.show("distances", 0.65 + 0.15 * part); });
         golden_run.reset();
     }
-    progress.show("checking the mesh", 0.8);
-    checks.invariants = invariants.get();
     files.make_folder(folder, "output.folder");
+    progress.show("mesh and picture", 0.8);
+    write_mesh_and_picture(folder, job, setup, mesh);
+    progress.show("checking the mesh", 0.95);
+    checks.invariants = invariants.get();
     const MeshCounts counts = mesh_counts.get();
-    write_run_folder(folder, job, setup, simulation, counts, checks, progress);
+    write_reports(folder, job, setup, simulation, counts, checks);
     replace_run(replaced, files);
     progress.clear();
 

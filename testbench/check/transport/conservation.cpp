@@ -261,6 +261,10 @@ std::vector<Conservation> conservation(const Simulation& simulation) {
 
 void observe(Simulation& simulation, TransportCheck& check) {
     simulation.observe_decisions(check);
+    observe_finished(simulation, check);
+}
+
+void observe_finished(Simulation& simulation, TransportCheck& check) {
     for (const auto& machine : simulation.machines) {
         machine->pipeline.pass_or_tessellate.finished.bind(check);
         machine->rasteriser.taken.bind(check);

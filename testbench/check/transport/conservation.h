@@ -32,6 +32,8 @@ std::uint64_t sum_over_tests(const Pipeline& pipeline, Figure figure) {
 
 /// Sends the check what it needs from a simulation that has not begun.
 void observe(Simulation& simulation, TransportCheck& check);
+/// The same without the passes.
+void observe_finished(Simulation& simulation, TransportCheck& check);
 
 /// The combined result of the transport check and these equations.
 WorkResult work_result(const TransportCheck& check, const Simulation& simulation);

@@ -106,13 +106,9 @@ unsigned unknown_vertices(const datapath::Triangle& triangle) {
 
 TransportCheck::TransportCheck(const datapath::Registers& registers,
                                const std::vector<datapath::Triangle>& base_triangles)
-    : registers_(registers), bases_(base_triangles.size()) {
+    : registers_(registers), passes_(base_triangles.size() + 1), finished_(base_triangles.size() + 1) {
     for (const datapath::Triangle& triangle : base_triangles)
-        base_of(triangle.base).decided.expect(hash_to_decide(triangle, unknown_vertices(triangle)));
-}
-
-TransportCheck::Base& TransportCheck::base_of(std::uint32_t base) {
-    return base < bases_.size() ? bases_[base] : foreign_;
+        passes_[place_of(triangle.base)].decided.expect(hash_to_decide(triangle, unknown_vertices(triangle)));
 }
 
 void TransportCheck::finding(const std::string& what) {
@@ -121,7 +117,7 @@ void TransportCheck::finding(const std::string& what) {
 }
 
 void TransportCheck::write(const datapath::TrianglePass& pass) {
-    Base& base = base_of(pass.triangle.base);
+    Passes& base = passes_[place_of(pass.triangle.base)];
     if (pass.told == datapath::Told::midpoints) {
         base.split.come(hash_to_split(pass));
     } else {
@@ -132,21 +128,23 @@ void TransportCheck::write(const datapath::TrianglePass& pass) {
         base.finished.expect(hash_to_finish(pass.triangle));
     else if (pass.told == datapath::Told::tests)
         base.split.expect(hash_to_split(pass));
-    else
-        datapath::tessellate(pass, registers_.triangulation, registers_.formats, counted_by_the_unit_,
+    else {
+        datapath::Saturations counted_by_the_unit;
+        datapath::tessellate(pass, registers_.triangulation, registers_.formats, counted_by_the_unit,
                              [&](const datapath::Triangle& child) {
                                  base.decided.expect(hash_to_decide(child, unknown_vertices(child)));
                              });
+    }
 }
 
 void TransportCheck::write(const datapath::Triangle& finished) {
-    base_of(finished.base).finished.come(hash_to_finish(finished));
+    finished_[place_of(finished.base)].come(hash_to_finish(finished));
+    datapath::Saturations counted_by_the_unit;
     LitTriangle lit;
     for (unsigned k = 0; k < 3; ++k) {
         const datapath::Vertex& vertex = finished.vertices[k];
-        datapath::Saturations saturations;
-        const datapath::Direction normal =
-            datapath::transform_normal(vertex.displaced_normal, registers_.transform, registers_.formats, saturations);
+        const datapath::Direction normal = datapath::transform_normal(
+            vertex.displaced_normal, registers_.transform, registers_.formats, counted_by_the_unit);
         if (!(normal == vertex.screen_normal))
             finding(
                 fmt::format("base triangle {}: a finished triangle's vertex {} has N's ({}, {}, {}); its N' "
@@ -154,7 +152,7 @@ void TransportCheck::write(const datapath::Triangle& finished) {
                             finished.base, k, vertex.screen_normal.x, vertex.screen_normal.y, vertex.screen_normal.z,
                             normal.x, normal.y, normal.z));
         lit.corners[k] = {vertex.screen, vertex.texture,
-                          datapath::light(normal, registers_.light, registers_.formats, counted_by_the_unit_)};
+                          datapath::light(normal, registers_.light, registers_.formats, counted_by_the_unit)};
     }
     const auto& v = finished.vertices;
     if (!registers_.back_face_culling || !datapath::faces_away(v[0].screen, v[1].screen, v[2].screen))
@@ -180,14 +178,14 @@ WorkResult TransportCheck::result() const {
         if (result.violations++ == 0)
             result.first_violation = text;
     };
-    for (std::size_t k = 0; k < bases_.size(); ++k) {
-        judge(bases_[k].decided, fmt::format("base triangle {}", k), "decided");
-        judge(bases_[k].split, fmt::format("base triangle {}", k), "split");
-        judge(bases_[k].finished, fmt::format("base triangle {}", k), "finished");
+    for (std::size_t k = 0; k < passes_.size(); ++k) {
+        const std::string whose = k == foreign() ? "no base triangle" : fmt::format("base triangle {}", k);
+        Balance finished = passes_[k].finished;
+        finished += finished_[k];
+        judge(passes_[k].decided, whose, "decided");
+        judge(passes_[k].split, whose, "split");
+        judge(finished, whose, "finished");
     }
-    judge(foreign_.decided, "no base triangle", "decided");
-    judge(foreign_.split, "no base triangle", "split");
-    judge(foreign_.finished, "no base triangle", "finished");
     judge(lit_, "all base triangles", "lit");
     return result;
 }

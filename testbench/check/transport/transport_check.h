@@ -33,7 +33,8 @@ struct WorkResult {
 /// Keeps a sum of 64-bit hashes, expected minus arrived, per base triangle and one for all lit triangles, instead of a
 /// table of triangles. Differences cancel with a probability of 2^-64. The scoreboard checks the decisions; this checks
 /// that their inputs are right. Children and light come from the datapath's functions, which have unit tests.
-/// Cost: about 70 ns per edge, an eighth of the scoreboard's.
+/// Cost: about 70 ns per edge, an eighth of the scoreboard's. Passes may be written by one thread, finished and lit
+/// triangles by another.
 class TransportCheck : public tlm::tlm_analysis_if<datapath::TrianglePass>,
                        public tlm::tlm_analysis_if<datapath::Triangle>,
                        public tlm::tlm_analysis_if<LitTriangle> {
@@ -59,23 +60,28 @@ class TransportCheck : public tlm::tlm_analysis_if<datapath::TrianglePass>,
             sum -= hash;
             --count;
         }
+        void operator+=(const Balance& other) {
+            sum += other.sum;
+            count += other.count;
+        }
         bool even() const { return sum == 0 && count == 0; }
     };
-    struct Base {
+    /// What the passes of a base triangle say.
+    struct Passes {
         Balance decided;
-        Balance split;  // with families
-        Balance finished;
+        Balance split;     // with families
+        Balance finished;  // expected only
     };
 
-    Base& base_of(std::uint32_t base);
+    std::size_t place_of(std::uint32_t base) const { return base < foreign() ? base : foreign(); }
+    std::size_t foreign() const { return passes_.size() - 1; }
     void finding(const std::string& what);
 
     datapath::Registers registers_;
-    std::vector<Base> bases_;
-    Base foreign_;
+    std::vector<Passes> passes_;     // by base triangle; the last: of triangles of none
+    std::vector<Balance> finished_;  // likewise: arrived only
     Balance lit_;
-    datapath::Saturations counted_by_the_unit_;  // required by the datapath's functions; ignored here
-    WorkResult result_;
+    WorkResult result_;  // triangles: from the passes; the rest: from the others
 };
 
 }  // namespace tessera
