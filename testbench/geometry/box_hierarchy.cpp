@@ -53,17 +53,10 @@ BoxHierarchy::Box BoxHierarchy::Node::box() const {
     return all;
 }
 
-BoxHierarchy::BoxHierarchy(std::size_t count, const std::function<Box(std::size_t)>& box) {
+BoxHierarchy::BoxHierarchy(std::size_t count, const Box& all, const std::function<Box(std::size_t)>& box) {
     if (count > std::numeric_limits<std::uint32_t>::max())
         throw ResourceError("more than 2^32 triangles cannot be sorted; measure a smaller mesh");
-    Box centres;
-    std::size_t some = 0;
-    for (std::size_t k = 0; k < count; ++k)
-        if (const Box b = box(k); !b.is_empty()) {
-            centres.add(centre_of(b));
-            ++some;
-        }
-    if (some == 0)
+    if (count == 0)
         return;
 
     // The Morton code of the centre, as long as there is room for, above the box's index.
@@ -72,14 +65,13 @@ BoxHierarchy::BoxHierarchy(std::size_t count, const std::function<Box(std::size_
         ++index_bits;
     const int axis_bits = std::min(21, (64 - index_bits) / 3);
     const double size = std::ldexp(1.0, axis_bits);
-    const glm::dvec3 extent = glm::max(centres.high - centres.low, std::numeric_limits<double>::min());
-    order_.reserve(some);
+    const glm::dvec3 extent = glm::max(all.high - all.low, std::numeric_limits<double>::min());
     {
-        std::vector<std::uint64_t> keys;
-        keys.reserve(some);
+        std::vector<std::uint64_t> keys;  // freed before the levels are made
+        keys.reserve(count);
         for (std::size_t k = 0; k < count; ++k)
             if (const Box b = box(k); !b.is_empty()) {
-                const glm::dvec3 cell = glm::min((centre_of(b) - centres.low) / extent * size, size - 1);
+                const glm::dvec3 cell = glm::clamp((centre_of(b) - all.low) / extent * size, 0.0, size - 1);
                 std::uint64_t code = 0;
                 for (int axis = 0; axis < 3; ++axis)
                     code |= spread(static_cast<std::uint64_t>(cell[axis])) << axis;
@@ -87,19 +79,23 @@ BoxHierarchy::BoxHierarchy(std::size_t count, const std::function<Box(std::size_
             }
         std::sort(keys.begin(), keys.end());
         const std::uint64_t index_mask = (std::uint64_t{1} << index_bits) - 1;
+        order_.reserve(keys.size());
         for (const std::uint64_t key : keys)
             order_.push_back(static_cast<std::uint32_t>(key & index_mask));
     }
 
+    if (order_.empty())
+        return;
+
     // The boxes are requested in the caller's order, which is faster than in Morton order.
     std::vector<std::uint32_t> place(count);
-    for (std::size_t k = 0; k < some; ++k)
+    for (std::size_t k = 0; k < order_.size(); ++k)
         place[order_[k]] = static_cast<std::uint32_t>(k);
     const auto level_of = [](std::size_t children) { return std::vector<Node>((children + lanes - 1) / lanes); };
     const auto set = [](std::vector<Node>& level, std::size_t child, const Box& b) {
         level[child / lanes].set(static_cast<std::uint32_t>(child % lanes), b);
     };
-    levels_.push_back(level_of(some));
+    levels_.push_back(level_of(order_.size()));
     for (std::size_t k = 0; k < count; ++k)
         if (const Box b = box(k); !b.is_empty())
             set(levels_.back(), place[k], b);

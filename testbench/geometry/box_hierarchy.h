@@ -26,6 +26,14 @@ class BoxHierarchy {
             low = glm::min(low, other.low);
             high = glm::max(high, other.high);
         }
+        /// Of points, or of boxes.
+        template <class Items>
+        static Box about(const Items& items) {
+            Box box;
+            for (const auto& item : items)
+                box.add(item);
+            return box;
+        }
         bool is_empty() const { return !(low.x <= high.x); }
         /// From p to the nearest point of the box, squared; 0 inside.
         double squared_distance(const glm::dvec3& p) const {
@@ -34,9 +42,9 @@ class BoxHierarchy {
         }
     };
 
-    /// Boxes may be empty, and `count` may be 0; `box` is called several times for each. Throws ResourceError beyond
-    /// 2^32 boxes.
-    BoxHierarchy(std::size_t count, const std::function<Box(std::size_t)>& box);
+    /// Boxes may be empty, and `count` may be 0; `box` is called twice for each. all: contains every box; the tighter,
+    /// the faster. Throws ResourceError beyond 2^32 boxes.
+    BoxHierarchy(std::size_t count, const Box& all, const std::function<Box(std::size_t)>& box);
 
     /// Calls visit(index) for every box within `radius` of p, and for some farther away, nearer ones roughly first.
     /// visit returns the radius for the rest of the search: the same or a smaller one.

@@ -23,13 +23,6 @@ std::size_t most_parts(std::size_t triangles) {
     return triangles < many ? 8 * triangles : 2 * triangles;
 }
 
-BoxHierarchy::Box box_about(const Corners& triangle) {
-    BoxHierarchy::Box box;
-    for (const glm::dvec3& corner : triangle)
-        box.add(corner);
-    return box;
-}
-
 /// Halves a triangle at its longest edge.
 std::array<Corners, 2> halves(const Corners& triangle) {
     const auto& [a, b, c] = triangle;
@@ -48,7 +41,7 @@ std::array<Corners, 2> halves(const Corners& triangle) {
 /// is a 1 followed by one bit per halving, the first halving first: 1 for the second half.
 template <class At>
 void for_each_part(const Corners& triangle, double thin, unsigned path, const At& at) {
-    const BoxHierarchy::Box box = box_about(triangle);
+    const BoxHierarchy::Box box = BoxHierarchy::Box::about(triangle);
     const glm::dvec3 side = box.high - box.low;
     const double surface = 2 * (side.x * side.y + side.y * side.z + side.z * side.x);
     const double area = glm::length(glm::cross(triangle[1] - triangle[0], triangle[2] - triangle[0])) / 2;
@@ -63,13 +56,13 @@ void for_each_part(const Corners& triangle, double thin, unsigned path, const At
 
 BoxHierarchy::Box box_of_part(Corners triangle, unsigned path) {
     if (path == 1)
-        return box_about(triangle);
+        return BoxHierarchy::Box::about(triangle);
     unsigned bit = most_halvings;
     while (path >> bit == 0)
         --bit;
     while (bit-- > 0)
         triangle = halves(triangle)[path >> bit & 1];
-    BoxHierarchy::Box box = box_about(triangle);
+    BoxHierarchy::Box box = BoxHierarchy::Box::about(triangle);
     const glm::dvec3 rounding = 0x1p-50 * glm::max(glm::abs(box.low), glm::abs(box.high));  // of new corners
     box.low -= rounding;
     box.high += rounding;
@@ -167,7 +160,7 @@ std::vector<NearestTriangle::Part> NearestTriangle::cut(const TriangleSoup& soup
 }
 
 NearestTriangle::NearestTriangle(const TriangleSoup& soup)
-    : soup_(soup), parts_(cut(soup)), boxes_(parts_.size(), [&](std::size_t box) {
+    : soup_(soup), parts_(cut(soup)), boxes_(parts_.size(), BoxHierarchy::Box::about(soup.vertices()), [&](std::size_t box) {
           return box_of_part(soup[parts_[box].triangle], parts_[box].path);
       }) {}
 

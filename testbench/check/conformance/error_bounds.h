@@ -149,17 +149,21 @@ class ErrorBounds {
     /// Golden's own error over a few double operations, relative to the sum of the terms' absolute values.
     static constexpr double double_rounding = 0x1p-50;
 
+    /// The farther end's distance from v, in LSB.
+    static double rounded_away(double v, double e) {
+        return std::max(std::abs(std::floor(v + e + 0.5) - v), std::abs(std::floor(v - e + 0.5) - v));
+    }
     static double after_rounding(double value, double error, double lsb) {
-        const double v = value / lsb, e = error / lsb;
-        return std::max(std::abs(std::floor(v + e + 0.5) - v), std::abs(std::floor(v - e + 0.5) - v)) * lsb;
+        return rounded_away(value / lsb, error / lsb) * lsb;
     }
     static glm::dvec3 after_rounding(const glm::dvec3& value, const glm::dvec3& error, double lsb) {
-        return {after_rounding(value.x, error.x, lsb), after_rounding(value.y, error.y, lsb),
-                after_rounding(value.z, error.z, lsb)};
+        const double per_lsb = 1 / lsb;  // exact, a power of two
+        const glm::dvec3 v = value * per_lsb, e = error * per_lsb;
+        return lsb * glm::dvec3(rounded_away(v.x, e.x), rounded_away(v.y, e.y), rounded_away(v.z, e.z));
     }
     /// Rounding error of a mean of two integers: 0 or u/2.
     static glm::dvec3 left_by_rounding_down(const glm::dvec3& mean, double lsb) {
-        const glm::dvec3 v = mean / lsb;
+        const glm::dvec3 v = mean * (1 / lsb);
         return (v - glm::floor(v)) * lsb;
     }
     /// |a x b| for components of any sign.

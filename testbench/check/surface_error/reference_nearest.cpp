@@ -22,7 +22,7 @@ ReferenceNearest::ReferenceNearest(const ReferenceLattice& lattice, Sampling sam
     : lattice_(lattice),
       sampling_(sampling),
       boxes_(boxes),
-      hierarchy_(boxes.size(), [&](std::size_t tile) { return boxes[tile]; }),
+      hierarchy_(boxes.size(), Box::about(boxes), [&](std::size_t tile) { return boxes[tile]; }),
       kept_(std::min(most_kept, boxes.size())) {}
 
 const ReferenceNearest::Kept& ReferenceNearest::fetch(std::size_t tile) {

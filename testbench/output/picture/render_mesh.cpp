@@ -38,25 +38,29 @@ RenderMesh make_render_mesh(const RecordedMesh& mesh) {
     RenderMesh result;
     result.origin = choose_origin(mesh);
     DistinctTable table;
-    const auto number_of = [&](const glm::vec3& position, const glm::vec3& normal) {
-        const std::uint32_t number = table.number_of(
+    constexpr std::uint32_t unknown = UINT32_MAX;
+    std::vector<std::uint32_t> number_of(mesh.positions.size(), unknown);
+    const auto add_vertex = [&](std::uint32_t vertex) {
+        const glm::vec3 position = mesh.positions[vertex] - result.origin, normal = mesh.normals[vertex];
+        number_of[vertex] = table.number_of(
             point_hash(position),
             [&](std::uint32_t v) { return result.positions[v] == position && result.normals[v] == normal; },
             [&](std::uint32_t v) { return point_hash(result.positions[v]); });
-        if (number == result.positions.size()) {
+        if (number_of[vertex] == result.positions.size()) {
             result.positions.push_back(position);
             result.normals.push_back(normal);
         }
-        return number;
     };
     std::vector<std::uint32_t> bases;
     result.triangles.reserve(mesh.triangles.size());
     bases.reserve(mesh.triangles.size());
     for (const RecordedMesh::Triangle& from : mesh.triangles) {
         RenderMesh::Triangle triangle{{}, from.generation, deciding_test_of(from.split_by), from.stopped_by};
-        for (std::size_t k = 0; k < 3; ++k)
-            triangle.vertices[k] =
-                number_of(mesh.positions[from.vertices[k]] - result.origin, mesh.normals[from.vertices[k]]);
+        for (std::size_t k = 0; k < 3; ++k) {
+            if (number_of[from.vertices[k]] == unknown)
+                add_vertex(from.vertices[k]);
+            triangle.vertices[k] = number_of[from.vertices[k]];
+        }
         result.triangles.push_back(triangle);
         bases.push_back(from.base);
     }

@@ -56,6 +56,10 @@ std::uint8_t triangle_generation(const EmittedTriangle& triangle) {
 RecordedMesh recorded_mesh(const EmittedMesh& mesh, const MeshUnits& units) {
     const IndexedMesh indexed = IndexedMesh::from(mesh);
     RecordedMesh result;
+    result.positions.reserve(indexed.vertices.size());
+    result.normals.reserve(indexed.vertices.size());
+    result.textures.reserve(indexed.vertices.size());
+    result.triangles.reserve(indexed.triangles.size());
     for (const std::uint32_t vertex : indexed.vertices) {
         const Corner& corner = mesh.triangles.corners()[vertex];
         result.positions.push_back(units.position(corner.displaced));

@@ -153,7 +153,8 @@ TEST_CASE("the tree of boxes visits each box within the radius once, and no empt
                     if (k % 7 != 3)
                         for (int corner = 0; corner < 2; ++corner)
                             boxes[k].add(size * random_triangle(random, 1)[0] + offset);
-                const BoxHierarchy hierarchy(count, [&](std::size_t k) { return boxes[k]; });
+                const auto all = BoxHierarchy::Box::about(boxes);
+                const BoxHierarchy hierarchy(count, all, [&](std::size_t k) { return boxes[k]; });
                 for (int n = 0; n < 20; ++n) {
                     const glm::dvec3 p = size * random_triangle(random, 1)[0] + offset;
                     const double radius = size * real(random, 0, 10);
