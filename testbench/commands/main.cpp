@@ -1,4 +1,5 @@
 #include <fmt/core.h>
+#include <malloc.h>
 
 #include <cerrno>
 #include <csignal>
@@ -55,6 +56,8 @@ int main(int argc, char** argv) {
     setenv("SYSTEMC_DISABLE_COPYRIGHT_MESSAGE", "1", 0);
     // A file beyond `ulimit -f` is then a write() error, which is reported and cleaned up.
     std::signal(SIGXFSZ, SIG_IGN);
+    // Memory of large tables is returned when they are freed; by default glibc raises this limit as it sees them.
+    mallopt(M_MMAP_THRESHOLD, 1 << 20);
     tessera::Interruption::expect();
     return sc_core::sc_elab_and_sim(argc, argv);
 }

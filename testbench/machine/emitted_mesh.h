@@ -158,6 +158,7 @@ class EmittedTriangles {
         constexpr std::uint32_t unknown = UINT32_MAX;
         std::vector<std::uint32_t> new_index(all.size(), unknown);
         DistinctTable table;
+        table.clear(all.size());
         for (Stored& triangle : stored_) {
             for (std::uint32_t& index : triangle.corners) {
                 const Corner& corner = all[index];
