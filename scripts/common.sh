@@ -14,11 +14,10 @@ unset LC_CTYPE LC_MESSAGES
 export LSAN_OPTIONS=use_stacks=0${LSAN_OPTIONS:+:$LSAN_OPTIONS}
 
 # ccache avoids repeated compilation, also across clones. It is used only if its cache is writable.
-if command -v ccache >/dev/null && mkdir -p "$(ccache --get-config cache_dir)" 2>/dev/null; then
+if command -v ccache >/dev/null && ccache_folder=$(ccache --get-config cache_dir) &&
+    mkdir -p "$ccache_folder" 2>/dev/null; then
     export CMAKE_CXX_COMPILER_LAUNCHER=${CMAKE_CXX_COMPILER_LAUNCHER-ccache}
-    # For tests that give a build another home.
-    CCACHE_DIR=$(ccache --get-config cache_dir)
-    export CCACHE_DIR
+    export CCACHE_DIR=$ccache_folder  # for tests that give a build another home
     # Clones have different paths: paths below the project are made relative, the build folder is ignored.
     export CCACHE_BASEDIR=${CCACHE_BASEDIR:-$root} CCACHE_NOHASHDIR=1 CCACHE_MAXSIZE=${CCACHE_MAXSIZE:-5G}
 fi
