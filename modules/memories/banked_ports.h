@@ -80,6 +80,8 @@ class BankedPorts {
 
   private:
     std::size_t first_free_port(std::size_t bank) const {
+        if (ports_ == 1)
+            return bank;
         const auto first = port_free_.begin() + static_cast<std::ptrdiff_t>(bank * ports_);
         return static_cast<std::size_t>(std::min_element(first, first + ports_) - port_free_.begin());
     }

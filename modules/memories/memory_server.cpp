@@ -111,17 +111,21 @@ void MemoryServer::step() {
 }
 
 unsigned MemoryServer::move(Storage& storage, MemoryRequest& request) {
-    if (request.command != tlm::TLM_READ_COMMAND && request.command != tlm::TLM_WRITE_COMMAND)
+    const bool writes = request.command == tlm::TLM_WRITE_COMMAND;
+    if (!writes && request.command != tlm::TLM_READ_COMMAND)
         return 0;
-    for (unsigned k = 0; k < request.count; ++k) {
-        if (!storage.covers(request.address[k], request.entry_bytes))
+    const unsigned count = request.count, entry_bytes = request.entry_bytes;
+    unsigned char* entry = request.data;
+    for (unsigned k = 0; k < count; ++k, entry += entry_bytes) {
+        const std::uint64_t address = request.address[k];
+        if (!storage.covers(address, entry_bytes))
             return 0;
-        if (request.command == tlm::TLM_READ_COMMAND)
-            storage.read(request.address[k], request.entry(k), request.entry_bytes);
+        if (writes)
+            storage.write(address, entry, entry_bytes);
         else
-            storage.write(request.address[k], request.entry(k), request.entry_bytes);
+            storage.read(address, entry, entry_bytes);
     }
-    return request.bytes();
+    return count * entry_bytes;
 }
 
 void MemoryServer::access(Storage& storage, MemoryRequest& request, bool may_write) {

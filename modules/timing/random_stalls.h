@@ -22,13 +22,14 @@ class RandomStalls {
     }
 
     /// Cycles to hold the next item back; 0: none.
-    unsigned next() {
-        if (per_mille_ == 0 || draw() % 1000 >= per_mille_)
+    unsigned next() { return per_mille_ == 0 ? 0 : draw_next(); }
+
+  private:
+    unsigned draw_next() {
+        if (draw() % 1000 >= per_mille_)
             return 0;
         return 1 + static_cast<unsigned>(draw() % longest_);
     }
-
-  private:
     std::uint64_t draw() {  // splitmix64
         state_ += 0x9e3779b97f4a7c15u;
         std::uint64_t z = state_;
