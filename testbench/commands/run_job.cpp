@@ -96,10 +96,10 @@ void write_mesh_and_picture(const std::filesystem::path& folder, const Job& job,
     });
     std::string picture;
     if (job.output.picture)
-        picture = encode_png(
-            render_views(make_render_mesh(mesh, setup), make_view(job.camera), {PictureView::overview}, {})
-                .front()
-                .image);
+        picture =
+            encode_png(render_views(make_render_mesh(mesh, setup), make_view(job.camera), {PictureView::overview}, {})
+                           .front()
+                           .image);
     mesh_files.get();
     if (job.output.picture)
         write_file(folder / "picture.png", picture);

@@ -160,9 +160,10 @@ std::vector<NearestTriangle::Part> NearestTriangle::cut(const TriangleSoup& soup
 }
 
 NearestTriangle::NearestTriangle(const TriangleSoup& soup)
-    : soup_(soup), parts_(cut(soup)), boxes_(parts_.size(), BoxHierarchy::Box::about(soup.vertices()), [&](std::size_t box) {
-          return box_of_part(soup[parts_[box].triangle], parts_[box].path);
-      }) {}
+    : soup_(soup),
+      parts_(cut(soup)),
+      boxes_(parts_.size(), BoxHierarchy::Box::about(soup.vertices()),
+             [&](std::size_t box) { return box_of_part(soup[parts_[box].triangle], parts_[box].path); }) {}
 
 NearestTriangle::Found NearestTriangle::nearest(const glm::dvec3& p, Guess& guess) const {
     Found found{guess.triangle, squared_distance(soup_[guess.triangle], p)};

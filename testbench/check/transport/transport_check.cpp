@@ -143,8 +143,8 @@ void TransportCheck::write(const datapath::Triangle& finished) {
     LitTriangle lit;
     for (unsigned k = 0; k < 3; ++k) {
         const datapath::Vertex& vertex = finished.vertices[k];
-        const datapath::Direction normal = datapath::transform_normal(
-            vertex.displaced_normal, registers_.transform, registers_.formats, counted_by_the_unit);
+        const datapath::Direction normal = datapath::transform_normal(vertex.displaced_normal, registers_.transform,
+                                                                      registers_.formats, counted_by_the_unit);
         if (!(normal == vertex.screen_normal))
             finding(
                 fmt::format("base triangle {}: a finished triangle's vertex {} has N's ({}, {}, {}); its N' "
