@@ -239,7 +239,6 @@ Ending run_once(const Job& asked, const Command& command, const std::string& nam
     });
     EmittedMesh& mesh = simulation.monitor.mesh;
     mesh.sort();
-    auto mesh_counts = beside([&] { return count_mesh(mesh); });
     auto invariants = beside([&] {
         return job.check.invariants ? std::optional<InvariantResult>(check_invariants(mesh, setup)) : std::nullopt;
     });
@@ -262,6 +261,7 @@ Ending run_once(const Job& asked, const Command& command, const std::string& nam
     }
     files.make_folder(folder, "output.folder");
     progress.show("mesh and picture", 0.8);
+    auto mesh_counts = beside([&] { return count_mesh(mesh); });
     write_mesh_and_picture(folder, job, setup, mesh);
     progress.show("checking the mesh", 0.95);
     checks.invariants = invariants.get();
