@@ -136,7 +136,8 @@ class MemoryPort {
     std::uint64_t reads_ = 0;
     const unsigned char* direct_ = nullptr;
     std::uint64_t direct_start_ = 0;
-    // Addresses at which eight bytes may be loaded; the table's last few entries are read by transaction. 0: no DMI.
+    // Addresses at which eight bytes may be loaded; requests that reach the table's last few entries are transactions.
+    // 0: no DMI.
     std::uint64_t direct_bytes_ = 0;
     std::array<sc_core::sc_time, datapath::most_rectangle_entries + 1> direct_times_;  // by number of entries
 

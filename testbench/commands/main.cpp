@@ -56,7 +56,8 @@ int main(int argc, char** argv) {
     setenv("SYSTEMC_DISABLE_COPYRIGHT_MESSAGE", "1", 0);
     // A file beyond `ulimit -f` is then a write() error, which is reported and cleaned up.
     std::signal(SIGXFSZ, SIG_IGN);
-    // Memory of large tables is returned when they are freed; by default glibc raises this limit as it sees them.
+    // Blocks of 1 MiB or more are returned to the system when freed; by default glibc raises this threshold to the size
+    // of large blocks already freed.
     mallopt(M_MMAP_THRESHOLD, 1 << 20);
     tessera::Interruption::expect();
     return sc_core::sc_elab_and_sim(argc, argv);

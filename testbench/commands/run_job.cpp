@@ -42,7 +42,7 @@ namespace tessera {
 
 namespace {
 
-/// Passes a simulation's decided passes to the checks that run concurrently; null: none.
+/// Passes a simulation's decided passes to checks on another thread. Either check may be null.
 class PassesInBackground : public tlm::tlm_analysis_if<datapath::TrianglePass> {
   public:
     PassesInBackground(Scoreboard* scoreboard, TransportCheck* work)
@@ -234,6 +234,7 @@ Ending run_once(const Job& asked, const Command& command, const std::string& nam
         checks.conformance = scoreboard->result();
         golden.reset();  // 36 bytes per texel
     }
+    progress.show("checking the set-up", 0.6);
     auto setup_result = beside([&] {
         return golden_job ? std::optional<SetupResult>(check_setup(setup, *golden_job, simulation)) : std::nullopt;
     });

@@ -42,8 +42,8 @@ class BoxHierarchy {
         }
     };
 
-    /// Boxes may be empty, and `count` may be 0; `box` is called twice for each. all: contains every box; the tighter,
-    /// the faster. Throws ResourceError beyond 2^32 boxes.
+    /// Boxes may be empty, and `count` may be 0; `box` is called twice for each. all: about all boxes; it affects only
+    /// speed, the tighter the faster. Throws ResourceError beyond 2^32 boxes.
     BoxHierarchy(std::size_t count, const Box& all, const std::function<Box(std::size_t)>& box);
 
     /// Calls visit(index) for every box within `radius` of p, and for some farther away, nearer ones roughly first.

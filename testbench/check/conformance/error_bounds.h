@@ -149,7 +149,7 @@ class ErrorBounds {
     /// Golden's own error over a few double operations, relative to the sum of the terms' absolute values.
     static constexpr double double_rounding = 0x1p-50;
 
-    /// The farther end's distance from v, in LSB.
+    /// The distance from v to the farther of round(v - e) and round(v + e); all in LSB.
     static double rounded_away(double v, double e) {
         return std::max(std::abs(std::floor(v + e + 0.5) - v), std::abs(std::floor(v - e + 0.5) - v));
     }

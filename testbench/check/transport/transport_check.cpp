@@ -121,7 +121,7 @@ void TransportCheck::write(const datapath::TrianglePass& pass) {
     if (pass.told == datapath::Told::midpoints) {
         base.split.come(hash_to_split(pass));
     } else {
-        ++result_.triangles;
+        ++triangles_;
         base.decided.come(hash_to_decide(pass.triangle, pass.new_vertices));
     }
     if (pass.split == 0)
@@ -165,6 +165,7 @@ void TransportCheck::write(const LitTriangle& lit) {
 
 WorkResult TransportCheck::result() const {
     WorkResult result = result_;
+    result.triangles = triangles_;
     const auto judge = [&](const Balance& balance, const std::string& whose, const char* what) {
         if (balance.even())
             return;

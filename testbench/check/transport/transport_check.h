@@ -30,11 +30,12 @@ struct WorkResult {
 ///   finished  each triangle that was decided and not split
 ///   lit       each finished triangle that is not culled; its N's is the transformed N', its intensities those of N's
 ///
-/// Keeps a sum of 64-bit hashes, expected minus arrived, per base triangle and one for all lit triangles, instead of a
+/// Keeps sums of 64-bit hashes, expected minus arrived, per base triangle and one for all lit triangles, instead of a
 /// table of triangles. Differences cancel with a probability of 2^-64. The scoreboard checks the decisions; this checks
 /// that their inputs are right. Children and light come from the datapath's functions, which have unit tests.
-/// Cost: about 70 ns per edge, an eighth of the scoreboard's. Passes may be written by one thread, finished and lit
-/// triangles by another.
+/// Cost: about 70 ns per edge, an eighth of the scoreboard's.
+///
+/// Passes may be written by one thread, finished and lit triangles by another.
 class TransportCheck : public tlm::tlm_analysis_if<datapath::TrianglePass>,
                        public tlm::tlm_analysis_if<datapath::Triangle>,
                        public tlm::tlm_analysis_if<LitTriangle> {
@@ -78,10 +79,13 @@ class TransportCheck : public tlm::tlm_analysis_if<datapath::TrianglePass>,
     void finding(const std::string& what);
 
     datapath::Registers registers_;
-    std::vector<Passes> passes_;     // by base triangle; the last: of triangles of none
-    std::vector<Balance> finished_;  // likewise: arrived only
+    // Written with the passes.
+    std::vector<Passes> passes_;  // by base triangle; the last: of triangles of none
+    std::uint64_t triangles_ = 0;
+    // Written with finished and lit triangles; not in the same line of the cache.
+    alignas(64) std::vector<Balance> finished_;  // likewise: arrived only
     Balance lit_;
-    WorkResult result_;  // triangles: from the passes; the rest: from the others
+    WorkResult result_;
 };
 
 }  // namespace tessera
