@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <string>
 #include <vector>
@@ -401,6 +402,18 @@ TEST_CASE("memory port: reads are transactions until direct access is granted, a
     CHECK(target.transactions == 5);
     read();
     CHECK(target.transactions == 5);
+    const auto read_two = [&](std::uint64_t second) {
+        const std::array<std::uint64_t, 2> addresses{4, second};
+        std::array<std::uint64_t, 2> entries{};
+        owner.port.read(addresses.data(), 2, entries.data(), delay);
+        CHECK(owner.port.reads() == (reads += 2));
+        CHECK(delay == period * reads);
+        return entries;
+    };
+    CHECK(read_two(8) == std::array<std::uint64_t, 2>{0x07060504, 0x0b0a0908});
+    CHECK(target.transactions == 5);
+    CHECK(read_two(12) == std::array<std::uint64_t, 2>{0x07060504, 0x0f0e0d0c});  // the last entry
+    CHECK(target.transactions == 7);
 }
 
 TEST_CASE("memory port: an error response is an error that names port, address and response") {
