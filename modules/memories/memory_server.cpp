@@ -114,6 +114,7 @@ unsigned MemoryServer::move(Storage& storage, MemoryRequest& request) {
     const bool writes = request.command == tlm::TLM_WRITE_COMMAND;
     if (!writes && request.command != tlm::TLM_READ_COMMAND)
         return 0;
+    // Copies: to the compiler the entries' bytes could be those of the request.
     const unsigned count = request.count, entry_bytes = request.entry_bytes;
     unsigned char* entry = request.data;
     for (unsigned k = 0; k < count; ++k, entry += entry_bytes) {

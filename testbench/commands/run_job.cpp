@@ -42,15 +42,15 @@ namespace tessera {
 
 namespace {
 
-/// Passes a simulation's decided passes to checks on another thread. Either check may be null.
-class PassesInBackground : public tlm::tlm_analysis_if<datapath::TrianglePass> {
+using PassSink = tlm::tlm_analysis_if<datapath::TrianglePass>;
+
+/// Passes a simulation's decided passes to checks on another thread.
+class PassesInBackground : public PassSink {
   public:
-    PassesInBackground(Scoreboard* scoreboard, TransportCheck* work)
-        : passes_([scoreboard, work](const datapath::TrianglePass& pass) {
-              if (scoreboard != nullptr)
-                  scoreboard->write(pass);
-              if (work != nullptr)
-                  work->write(pass);
+    explicit PassesInBackground(const std::vector<PassSink*>& checks)
+        : passes_([checks](const datapath::TrianglePass& pass) {
+              for (PassSink* check : checks)
+                  check->write(pass);
           }) {}
 
     void write(const datapath::TrianglePass& pass) override { passes_.put(pass); }
@@ -171,20 +171,23 @@ Ending run_once(const Job& asked, const Command& command, const std::string& nam
     Simulation simulation(setup, static_cast<std::uint64_t>(job.limits.triangles),
                           static_cast<std::uint64_t>(job.limits.cycles_without_progress),
                           checked_units ? &*checked_units : nullptr);
+    std::vector<PassSink*> pass_checks;
     std::optional<GoldenInputs> golden;
     std::unique_ptr<Scoreboard> scoreboard;
     if (job.check.golden) {
         golden.emplace(setup);
         scoreboard = std::make_unique<Scoreboard>(setup.registers, *golden);
+        pass_checks.push_back(scoreboard.get());
     }
     std::unique_ptr<TransportCheck> work;
     if (job.check.work) {
         work = std::make_unique<TransportCheck>(setup.registers, setup.base_triangles);
         observe_finished(simulation, *work);
+        pass_checks.push_back(work.get());
     }
     std::optional<PassesInBackground> passes;
-    if (scoreboard || work) {
-        passes.emplace(scoreboard.get(), work.get());
+    if (!pass_checks.empty()) {
+        passes.emplace(pass_checks);
         simulation.observe_decisions(*passes);
     }
     TexelBorders borders(setup.registers.formats);

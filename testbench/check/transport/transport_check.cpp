@@ -124,11 +124,11 @@ void TransportCheck::write(const datapath::TrianglePass& pass) {
         ++triangles_;
         base.decided.come(hash_to_decide(pass.triangle, pass.new_vertices));
     }
-    if (pass.split == 0)
+    if (pass.split == 0) {
         base.finished.expect(hash_to_finish(pass.triangle));
-    else if (pass.told == datapath::Told::tests)
+    } else if (pass.told == datapath::Told::tests) {
         base.split.expect(hash_to_split(pass));
-    else {
+    } else {
         datapath::Saturations counted_by_the_unit;
         datapath::tessellate(pass, registers_.triangulation, registers_.formats, counted_by_the_unit,
                              [&](const datapath::Triangle& child) {
