@@ -134,11 +134,14 @@ schedule::Plan Conductor::plan_of(Pipeline& machine, const Rasteriser& rasterise
 
 void Conductor::ReadFacts::read(unsigned part, const Reads& reads) {
     schedule::PartReads& facts = parts_[part];
-    if (reads.requests() > 0)
-        facts.memory = static_cast<std::uint8_t>(reads.port(0));
-    facts.requests = static_cast<std::uint8_t>(reads.requests());
-    for (unsigned k = 0; k < reads.requests(); ++k)
-        facts.entries[k] = static_cast<std::uint8_t>(reads.count(k));
+    const unsigned requests = reads.requests();
+    facts.requests = static_cast<std::uint8_t>(requests);
+    if (requests == 0)
+        return;
+    facts.memory = static_cast<std::uint8_t>(reads.port(0));
+    for (unsigned k = 0; k < requests; ++k)
+        facts.first[k] = static_cast<std::uint8_t>(reads.first(k));
+    facts.first[requests] = static_cast<std::uint8_t>(reads.entries());
     const BankOfEntry& bank_of = memories_[facts.memory];
     if (!bank_of.several())
         return;

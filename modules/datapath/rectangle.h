@@ -84,24 +84,24 @@ constexpr unsigned most_rectangle_entries = 9;
 /// one more add per corner and axis: four reads, or up to nine when r wraps.
 template <class Entry>
 constexpr void rectangle_entries(const Rectangle& r, const MapGeometry& map, const TableLayout& table, Entry&& entry) {
-    const auto in_row = [&](std::uint32_t x, std::uint32_t y, bool subtracted) {
-        if (x > map.width) {
-            entry(table.address(map.width, y), subtracted);
-            x -= map.width;
-        }
-        entry(table.address(x, y), subtracted);
+    const auto in_column = [&](std::uint32_t x) { return std::uint64_t{x} * table.entry_bytes; };
+    const std::uint64_t first_row = table.address(0, r.first_row), first_column = in_column(r.first_column);
+    const bool wraps_u = r.last_column > map.width, wraps_v = r.last_row > map.height;
+    const std::uint64_t last_row = table.address(0, wraps_v ? r.last_row - map.height : r.last_row);
+    const std::uint64_t last_column = in_column(wraps_u ? r.last_column - map.width : r.last_column);
+    const auto right_corner = [&](std::uint64_t row, bool subtracted) {
+        if (wraps_u)
+            entry(row + in_column(map.width), subtracted);
+        entry(row + last_column, subtracted);
     };
-    const auto corner = [&](std::uint32_t x, std::uint32_t y, bool subtracted) {
-        if (y > map.height) {
-            in_row(x, map.height, subtracted);
-            y -= map.height;
-        }
-        in_row(x, y, subtracted);
-    };
-    corner(r.last_column, r.last_row, false);
-    corner(r.first_column, r.last_row, true);
-    corner(r.last_column, r.first_row, true);
-    corner(r.first_column, r.first_row, false);
+    if (wraps_v)
+        right_corner(table.address(0, map.height), false);
+    right_corner(last_row, false);
+    if (wraps_v)
+        entry(table.address(0, map.height) + first_column, true);
+    entry(last_row + first_column, true);
+    right_corner(first_row, true);
+    entry(first_row + first_column, false);
 }
 
 /// S(r): `read(address)` gives the entry at a byte address.

@@ -45,14 +45,7 @@ class BankedPorts {
 
     /// Reads the entries, from `cycle` on, as ports become free. Returns the cycle of the last entry's data.
     std::uint64_t serve(const std::uint64_t* addresses, unsigned count, std::uint64_t cycle) {
-        std::uint64_t last = cycle;
-        for (unsigned k = 0; k < count; ++k) {
-            const std::size_t bank = bank_of_(addresses[k]);
-            std::uint64_t& free = port_free_[first_free_port(bank)];
-            free = std::max(free, cycle) + slots_per_entry_;
-            bank_slots_[bank] += slots_per_entry_;
-            last = std::max(last, free - 1);
-        }
+        const std::uint64_t last = send(addresses, count, cycle);
         slots_taken_ += std::uint64_t{count} * slots_per_entry_;
         if (!window_.empty()) {
             window_[oldest_] = last + 1;
@@ -79,6 +72,24 @@ class BankedPorts {
     std::uint64_t occupied_cycles() const { return *std::max_element(bank_slots_.begin(), bank_slots_.end()) / ports_; }
 
   private:
+    /// Returns the last cycle in which the entries' addresses occupy a port.
+    std::uint64_t send(const std::uint64_t* addresses, unsigned count, std::uint64_t cycle) {
+        if (port_free_.size() == 1) {
+            const std::uint64_t slots = std::uint64_t{count} * slots_per_entry_;
+            port_free_[0] = std::max(port_free_[0], cycle) + slots;
+            bank_slots_[0] += slots;
+            return port_free_[0] - 1;
+        }
+        std::uint64_t last = cycle;
+        for (unsigned k = 0; k < count; ++k) {
+            const std::size_t bank = bank_of_(addresses[k]);
+            std::uint64_t& free = port_free_[first_free_port(bank)];
+            free = std::max(free, cycle) + slots_per_entry_;
+            bank_slots_[bank] += slots_per_entry_;
+            last = std::max(last, free - 1);
+        }
+        return last;
+    }
     std::size_t first_free_port(std::size_t bank) const {
         if (ports_ == 1)
             return bank;

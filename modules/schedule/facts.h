@@ -16,9 +16,12 @@ struct PartReads {
     static constexpr unsigned most_entries = 27;
 
     std::uint8_t requests = 0;
-    std::uint8_t memory = 0;                          ///< which of the unit's memories
-    std::array<std::uint8_t, most_requests> entries;  ///< of each request
-    std::array<std::uint8_t, most_entries> banks;     ///< of each entry, if the table has more than one
+    std::uint8_t memory = 0;                            ///< which of the unit's memories
+    std::array<std::uint8_t, most_requests + 1> first;  ///< entry of each request; then the number of entries
+    std::array<std::uint8_t, most_entries> banks;       ///< of each entry, if the table has more than one
+
+    const std::uint8_t* banks_of(unsigned request) const { return &banks[first[request]]; }
+    unsigned entries_of(unsigned request) const { return first[request + 1] - unsigned{first[request]}; }
 };
 
 /// Where Pass or Tessellate sends a triangle.

@@ -63,8 +63,8 @@ void Machine::pass(const Facts& facts) {
 Cycle Machine::read(Table& table, const PartReads& reads, Cycle start, Cycle& asked) {
     asked = start;
     Cycle answer = 0;
-    for (unsigned request = 0, entry = 0; request < reads.requests; entry += reads.entries[request++]) {
-        answer = table.request(asked, &reads.banks[entry], reads.entries[request]);
+    for (unsigned request = 0; request < reads.requests; ++request) {
+        answer = table.request(asked, reads.banks_of(request), reads.entries_of(request));
         asked = table.taken();
     }
     return answer;

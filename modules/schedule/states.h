@@ -69,11 +69,10 @@ class Level {
 
     /// The next item entered in cycle `in` and left in cycle `out`.
     void stay(Cycle in, Cycle out) {
-        while (left_ < items_ && out_[left_] <= in)
+        while (left_ < items() && out_[left_] <= in)
             ++left_;
         out_.add(out);
-        ++items_;
-        most_ = std::max({most_, std::uint64_t{1}, items_ - left_ - (out == in ? 1 : 0)});
+        most_ = std::max(most_, items() - left_ - (out == in ? 1 : 0));
         item_cycles_ += out - in;
         if (observer_ != nullptr) {
             observer_->item(in, true);
@@ -82,15 +81,14 @@ class Level {
     }
     void observe(ItemObserver* observer) { observer_ = observer; }
 
-    std::uint64_t items() const { return items_; }
+    std::uint64_t items() const { return out_.count(); }
     /// Most items at the end of a cycle; at least one if any item entered.
-    std::uint64_t most() const { return most_; }
+    std::uint64_t most() const { return std::max(most_, std::min(items(), std::uint64_t{1})); }
     /// The sum of the cycles that each item spent in the unit.
     std::uint64_t item_cycles() const { return item_cycles_; }
 
   private:
     History out_;
-    std::uint64_t items_ = 0;
     std::uint64_t left_ = 0;
     std::uint64_t most_ = 0;
     std::uint64_t item_cycles_ = 0;

@@ -158,12 +158,11 @@ class SteppedStage {
         while (asked_ < to_ask_ && !on_offer_) {
             const InPipeline& it = items_[started_ - 1];
             const PartReads& reads = (passes_[it.item.pass()].facts.*reads_)[it.item.part()];
-            const unsigned entries = reads.entries[asked_];
-            const std::uint8_t* const banks = &reads.banks[asked_entries_];
-            asked_entries_ += entries;
-            const bool last = ++asked_ == to_ask_;
+            const unsigned request = asked_++;
+            const bool last = asked_ == to_ask_;
             const ItsMemory& memory = memories_[reads.memory];
-            on_offer_ = !memory.table->offer({this, banks, entries, last, started_ - 1}, memory.number);
+            on_offer_ = !memory.table->offer(
+                {this, reads.banks_of(request), reads.entries_of(request), last, started_ - 1}, memory.number);
         }
         return !on_offer_;
     }
@@ -191,7 +190,7 @@ class SteppedStage {
         it.memory = nobody;
         if (reads_ != nullptr) {
             const PartReads& reads = (passes_[it.item.pass()].facts.*reads_)[it.item.part()];
-            asked_ = asked_entries_ = 0;
+            asked_ = 0;
             to_ask_ = reads.requests;
             if (to_ask_ > 0) {
                 it.finished = never;
@@ -223,7 +222,6 @@ class SteppedStage {
     Latest<InPipeline> items_;
     std::uint64_t started_ = 0, departed_ = 0;
     unsigned to_ask_ = 0, asked_ = 0;  // requests of the item that started last
-    unsigned asked_entries_ = 0;
     bool on_offer_ = false;     // a request is on offer
     Unit blocked_by_ = nobody;  // consumer that blocks the first item; nobody: the item is not on offer
     States states_;

@@ -33,14 +33,16 @@ class Activity {
     }
 
     void item_in(std::uint64_t cycle) {
-        integrate(cycle);
+        end_of_cycle_before(cycle);
+        item_cycles_ -= cycle;
         ++items_in_;
         ++level_;
         if (observer_ != nullptr)
             observer_->item(cycle, true);
     }
     void item_out(std::uint64_t cycle) {
-        integrate(cycle);
+        end_of_cycle_before(cycle);
+        item_cycles_ += cycle;
         ++items_out_;
         --level_;
         if (observer_ != nullptr)
@@ -50,7 +52,8 @@ class Activity {
     /// Accounts for the cycles up to `cycle`, the run's end.
     void finish(std::uint64_t cycle) {
         close(cycle);
-        integrate(cycle);
+        end_of_cycle_before(cycle);
+        finished_ = cycle;
     }
 
     /// Ends the present stretch at `cycle` and begins another in the same state.
@@ -93,8 +96,9 @@ class Activity {
     std::uint64_t high_water_mark() const {
         return std::max({high_water_mark_, level_, std::min(items_in_, std::uint64_t{1})});
     }
-    /// Sum over all cycles of the items in the unit: mean occupancy times cycles, or the sum of all residence times.
-    std::uint64_t item_cycles() const { return item_cycles_; }
+    /// Sum over all cycles up to finish() of the items in the unit: mean occupancy times cycles, or the sum of all
+    /// residence times.
+    std::uint64_t item_cycles() const { return item_cycles_ + level_ * finished_; }
 
     void observe(ActivityObserver* observer) { observer_ = observer; }
 
@@ -123,10 +127,10 @@ class Activity {
         SC_REPORT_ERROR("tessera/activity", "a unit has more neighbours than can be distinguished");
         return shares_[recent_ = 0];
     }
-    void integrate(std::uint64_t cycle) {
+    /// The level is that at the end of the cycles up to `cycle`.
+    void end_of_cycle_before(std::uint64_t cycle) {
         if (cycle > level_since_)
             high_water_mark_ = std::max(high_water_mark_, level_);
-        item_cycles_ += level_ * (cycle - level_since_);
         level_since_ = cycle;
     }
 
@@ -140,7 +144,8 @@ class Activity {
     std::uint64_t items_out_ = 0;
     std::uint64_t level_ = 0;
     std::uint64_t high_water_mark_ = 0;
-    std::uint64_t item_cycles_ = 0;
+    std::uint64_t item_cycles_ = 0;  // cycles in which items left minus those in which they entered, modulo 2^64
+    std::uint64_t finished_ = 0;
     std::uint64_t level_since_ = 0;
     ActivityObserver* observer_ = nullptr;
 };

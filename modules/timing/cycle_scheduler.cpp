@@ -142,7 +142,10 @@ bool CycleScheduler::begin_observing() {
 
 /// Whether nothing else will happen until the next cycle, `cycles` after the present one.
 bool CycleScheduler::may_run_ahead(std::uint64_t cycles) const {
-    return observer_ == nullptr && sc_core::sc_time_to_pending_activity() > lag_ + duration(cycles);
+    if (observer_ != nullptr || sc_core::sc_pending_activity_at_current_time())
+        return false;
+    return !sc_core::sc_pending_activity_at_future_time() ||
+           sc_core::sc_time_to_pending_activity() > lag_ + duration(cycles);
 }
 
 void CycleScheduler::tick() {

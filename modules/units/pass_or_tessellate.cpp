@@ -134,8 +134,7 @@ PassOrTessellate::Incomplete* PassOrTessellate::open_place(const PartTag& tag, s
     return incomplete_.find(tag.triangle);
 }
 
-bool PassOrTessellate::take_parts(std::uint64_t cycle) {
-    bool taken = false;
+void PassOrTessellate::take_parts(std::uint64_t cycle) {
     for (; !from_transform.empty(); from_transform.pop()) {
         const ScreenPoint& part = from_transform.front();
         Incomplete* place = incomplete_.find(part.tag.triangle);
@@ -144,7 +143,6 @@ bool PassOrTessellate::take_parts(std::uint64_t cycle) {
         if (place == nullptr)
             break;
         take(*place, part);
-        taken = true;
     }
     for (StreamInput<TestedEdge>& input : from_tessellation_tests) {
         for (; !input.empty(); input.pop()) {
@@ -152,10 +150,8 @@ bool PassOrTessellate::take_parts(std::uint64_t cycle) {
             if (place == nullptr)
                 break;
             take(*place, input.front());
-            taken = true;
         }
     }
-    return taken;
 }
 
 bool PassOrTessellate::deliver(Decided& next) {
@@ -176,9 +172,9 @@ void PassOrTessellate::step() {
         pipeline_.pop();
         activity_.item_out(cycle);
     }
-    bool changed = true;
-    while (changed) {
-        changed = take_parts(cycle);
+    for (bool place_freed = true; place_freed;) {
+        take_parts(cycle);
+        place_freed = false;
         while (first_is_complete() && pipeline_.may_start(cycle)) {
             Decided& next = pipeline_.start(cycle);
             DecidedTriangle& triangle = incomplete_.oldest().triangle;
@@ -189,7 +185,7 @@ void PassOrTessellate::step() {
                 next.to_lighting = to_light(triangle.origin, triangle.pass.triangle);
             incomplete_.close_oldest();
             clock_.progress();
-            changed = true;
+            place_freed = true;
         }
     }
     ahead_of_parts_ = from_get_triangle.size();

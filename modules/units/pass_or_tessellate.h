@@ -84,7 +84,7 @@ class PassOrTessellate : public DecidingUnit {
     Incomplete& place_of(const PartTag& tag);
     void finish_if_complete(Incomplete& place, const PartTag& tag, sc_core::sc_time& delay);
     void step() override;
-    bool take_parts(std::uint64_t cycle);
+    void take_parts(std::uint64_t cycle);
     Incomplete* open_place(const PartTag& tag, std::uint64_t cycle);
     void open(const TakenTriangle& taken);
     static void take(Incomplete& place, const ScreenPoint& part);
