@@ -222,8 +222,8 @@ class SteppedStage {
     Latest<InPipeline> items_;
     std::uint64_t started_ = 0, departed_ = 0;
     unsigned to_ask_ = 0, asked_ = 0;  // requests of the item that started last
-    bool on_offer_ = false;     // a request is on offer
-    Unit blocked_by_ = nobody;  // consumer that blocks the first item; nobody: the item is not on offer
+    bool on_offer_ = false;            // a request is on offer
+    Unit blocked_by_ = nobody;         // consumer that blocks the first item; nobody: the item is not on offer
     States states_;
     Level level_;
 };

@@ -69,6 +69,21 @@ TEST_CASE("activity: cycles by state, and by the neighbour that blocks or is awa
     CHECK(share(State::waiting_for_memory, b) == 0);
 }
 
+TEST_CASE("activity: an item counts from its arrival to its departure, or to the end of the run") {
+    Activity activity;
+    activity.item_in(3);
+    activity.item_in(5);
+    activity.item_out(9);
+    CHECK(activity.high_water_mark() == 2);
+    activity.finish(20);
+    CHECK(activity.item_cycles() == (9 - 3) + (20 - 5));
+    activity.finish(22);
+    CHECK(activity.item_cycles() == (9 - 3) + (22 - 5));
+    activity.item_out(25);
+    activity.finish(30);
+    CHECK(activity.item_cycles() == (9 - 3) + (25 - 5));
+}
+
 TEST_CASE("activity: more neighbours than the limit are an error, none is counted as another") {
     std::vector<std::unique_ptr<Neighbour>> neighbours;
     Activity activity;
