@@ -81,7 +81,7 @@ constexpr unsigned most_rectangle_entries = 9;
 /// The table has (width + 1) x (height + 1) entries; entry (x, y) is the sum of texels [0, x) x [0, y) modulo
 /// 2^bits, so row 0 and column 0 are zero. Subtraction wraps correctly as long as S(r) itself fits.
 /// Past the map (repeat) the table reads periodically: SAT(x + W, y) = SAT(x, y) + SAT(W, y), one more read and
-/// one more add per corner and axis: four reads, or up to nine when r wraps.
+/// one more add per corner and axis: four reads, or up to nine when r wraps. r begins inside the map.
 template <class Entry>
 constexpr void rectangle_entries(const Rectangle& r, const MapGeometry& map, const TableLayout& table, Entry&& entry) {
     const auto in_column = [&](std::uint32_t x) { return std::uint64_t{x} * table.entry_bytes; };

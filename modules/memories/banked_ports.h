@@ -43,7 +43,7 @@ class BankedPorts {
         return cycle;
     }
 
-    /// Reads the entries, from `cycle` on, as ports become free. Returns the cycle of the last entry's data.
+    /// Reads at least one entry, from `cycle` on, as ports become free. Returns the cycle of the last entry's data.
     std::uint64_t serve(const std::uint64_t* addresses, unsigned count, std::uint64_t cycle) {
         const std::uint64_t last = send(addresses, count, cycle);
         slots_taken_ += std::uint64_t{count} * slots_per_entry_;

@@ -17,7 +17,7 @@ struct PartReads {
 
     std::uint8_t requests = 0;
     std::uint8_t memory = 0;                            ///< which of the unit's memories
-    std::array<std::uint8_t, most_requests + 1> first;  ///< entry of each request; then the number of entries
+    std::array<std::uint8_t, most_requests + 1> first;  ///< index of each request's first entry; then their number
     std::array<std::uint8_t, most_entries> banks;       ///< of each entry, if the table has more than one
 
     const std::uint8_t* banks_of(unsigned request) const { return &banks[first[request]]; }

@@ -30,7 +30,8 @@ class Reads {
     unsigned last_port() const { return port_; }
     unsigned requests() const { return requests_; }
     unsigned entries() const { return entries_; }
-    /// A request's first entry, and the number of its entries; addresses() has those of all requests in order.
+    /// The index of a request's first entry, and the number of its entries; addresses() has the entries of all requests
+    /// in order.
     unsigned first(unsigned request) const { return first_[request]; }
     unsigned count(unsigned request) const {
         return (request + 1 < requests_ ? first_[request + 1] : entries_) - first_[request];

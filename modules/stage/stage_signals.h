@@ -8,7 +8,7 @@
 
 namespace tessera {
 
-// What a Stage shows of itself: its contents, its occupancy, its signals. Part of stage_steps.h.
+// What a Stage shows of itself: its contents, its occupancy, its signals. Included by stage_steps.h only.
 
 template <class In, class Out>
 std::uint64_t Stage<In, Out>::occupied_cycles() const {

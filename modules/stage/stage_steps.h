@@ -13,8 +13,8 @@
 
 namespace tessera {
 
-// The implementation of stage.h; what a stage shows of itself is in stage_signals.h. Include it where a Stage is
-// instantiated.
+// The implementation of stage.h. Include this file where a Stage is instantiated. What a stage shows of itself is in
+// stage_signals.h.
 
 /// The implementation of a stage.
 template <class In, class Out>
@@ -190,28 +190,28 @@ void Stage<In, Out>::take_answers(std::uint64_t cycle) {
 template <class In, class Out>
 void Stage<In, Out>::step() {
     const std::uint64_t cycle = clock_.last_cycle();
-    const bool reads = reads_tables();
+    const bool has_tables = reads_tables();
     Machinery& m = *machinery_;
-    if (reads)
+    if (has_tables)
         take_answers(cycle);
     while (m.pipeline.front_finished(cycle) && m.fork.deliver(m.pipeline.front().result)) {
         m.pipeline.pop();
-        if (reads)
+        if (has_tables)
             --m.waiting;
         activity_.item_out(cycle);
     }
     bool lacking = false;
-    while ((!reads || m.ask()) && !input_->empty() && m.pipeline.may_start(cycle)) {
+    while ((!has_tables || m.ask()) && !input_->empty() && m.pipeline.may_start(cycle)) {
         lacking = may_wait_ && !may_start(input_->front());
         if (lacking)
             break;
         start(cycle);
     }
-    if (reads)
+    if (has_tables)
         m.skip_processed();
     if (m.pipeline.front_finished(cycle))
         activity_.set(cycle, State::blocked, m.fork.blocked_by());
-    else if (reads && m.waiting == 0 && !m.pipeline.empty())
+    else if (has_tables && m.waiting == 0 && !m.pipeline.empty())
         activity_.set(cycle, State::waiting_for_memory, m.awaited().memory());
     else if (!m.pipeline.empty() || (!lacking && !input_->empty()))
         activity_.set(cycle, State::busy);

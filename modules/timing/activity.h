@@ -96,8 +96,8 @@ class Activity {
     std::uint64_t high_water_mark() const {
         return std::max({high_water_mark_, level_, std::min(items_in_, std::uint64_t{1})});
     }
-    /// Sum over all cycles up to finish() of the items in the unit: mean occupancy times cycles, or the sum of all
-    /// residence times.
+    /// Sum over all cycles of the items in the unit: mean occupancy times cycles, or the sum of all residence times.
+    /// While items are in the unit, valid only right after finish().
     std::uint64_t item_cycles() const { return item_cycles_ + level_ * finished_; }
 
     void observe(ActivityObserver* observer) { observer_ = observer; }
@@ -127,7 +127,7 @@ class Activity {
         SC_REPORT_ERROR("tessera/activity", "a unit has more neighbours than can be distinguished");
         return shares_[recent_ = 0];
     }
-    /// The level is that at the end of the cycles up to `cycle`.
+    /// level_ was the level at the end of each cycle from level_since_ to `cycle` - 1.
     void end_of_cycle_before(std::uint64_t cycle) {
         if (cycle > level_since_)
             high_water_mark_ = std::max(high_water_mark_, level_);
@@ -144,7 +144,7 @@ class Activity {
     std::uint64_t items_out_ = 0;
     std::uint64_t level_ = 0;
     std::uint64_t high_water_mark_ = 0;
-    std::uint64_t item_cycles_ = 0;  // cycles in which items left minus those in which they entered, modulo 2^64
+    std::uint64_t item_cycles_ = 0;  // sum of the cycles in which items left, minus of those they entered in, mod 2^64
     std::uint64_t finished_ = 0;
     std::uint64_t level_since_ = 0;
     ActivityObserver* observer_ = nullptr;

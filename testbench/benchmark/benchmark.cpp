@@ -82,7 +82,7 @@ void one_frame(benchmark::State& state, Simulation& simulation) {
     for (auto _ : state) {
         simulation.monitor.mesh.triangles.clear();
         simulation.host.send_again();
-        // The other simulations' time passes between two frames.
+        // Between two frames the other simulations advance simulated time: a timed frame begins at the present cycle.
         const HostedMachine& machine = simulation.last_machine();
         const std::uint64_t first_cycle = machine.conductor ? machine.last_cycle() : machine.pipeline.clock.cycle();
         if (!simulation.run().empty())
