@@ -53,7 +53,6 @@ class Activity {
     void finish(std::uint64_t cycle) {
         close(cycle);
         end_of_cycle_before(cycle);
-        finished_ = cycle;
     }
 
     /// Ends the present stretch at `cycle` and begins another in the same state.
@@ -97,8 +96,7 @@ class Activity {
         return std::max({high_water_mark_, level_, std::min(items_in_, std::uint64_t{1})});
     }
     /// Sum over all cycles of the items in the unit: mean occupancy times cycles, or the sum of all residence times.
-    /// While items are in the unit, valid only right after finish().
-    std::uint64_t item_cycles() const { return item_cycles_ + level_ * finished_; }
+    std::uint64_t item_cycles() const { return item_cycles_ + level_ * level_since_; }
 
     void observe(ActivityObserver* observer) { observer_ = observer; }
 
@@ -145,7 +143,6 @@ class Activity {
     std::uint64_t level_ = 0;
     std::uint64_t high_water_mark_ = 0;
     std::uint64_t item_cycles_ = 0;  // sum of the cycles in which items left, minus of those they entered in, mod 2^64
-    std::uint64_t finished_ = 0;
     std::uint64_t level_since_ = 0;
     ActivityObserver* observer_ = nullptr;
 };

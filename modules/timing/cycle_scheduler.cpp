@@ -142,6 +142,7 @@ bool CycleScheduler::begin_observing() {
 
 /// Whether nothing else will happen until the next cycle, `cycles` after the present one.
 bool CycleScheduler::may_run_ahead(std::uint64_t cycles) const {
+    // Two cheap questions; the third, for the time, is rarely needed.
     if (observer_ != nullptr || sc_core::sc_pending_activity_at_current_time())
         return false;
     return !sc_core::sc_pending_activity_at_future_time() ||
