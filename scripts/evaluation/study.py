@@ -9,7 +9,7 @@ from functools import cached_property
 from pathlib import Path
 
 from emitted_mesh import read_mesh
-from program import FOLDER, Task, effective_job, file_hash, run_commands, set_options
+from program import FOLDER, Task, effective_job, run_commands, set_options
 from sweep_file import JOBS
 
 ROOT = Path(__file__).resolve().parent.parent.parent
@@ -38,7 +38,8 @@ class Study:
         """job: a name in testbench/examples/jobs, or None for the half donut. error: measured as `tessera compare` does.
         keep: keep the files, for meshes, pictures and frames."""
         job, settings = job and JOBS / f"{job}.toml", {**self.QUIET, **(settings or {})}
-        return self.add(name, [self._content(job, settings), error], run_commands(self.program, job, settings, error), keep)
+        content, inputs = self._content(job, settings)
+        return self.add(name, [content, error], run_commands(self.program, job, settings, error), keep, inputs)
 
     def tune(self, name, triangles, job=None, tests="normal,summed_height", settings=None, grid=None, metric=None, run=True):
         """A run with the thresholds (and, with `grid`, the base mesh) of least error for a number of triangles; without `run`
@@ -46,29 +47,36 @@ class Study:
         job, settings, tuned = job and JOBS / f"{job}.toml", settings or {}, f"{FOLDER}/tuned.toml"
         tune = self.words("tune", job, "--triangles", triangles, "--tests", tests, "--output", tuned, grid and "--grid", grid,
                           metric and "--metric", metric, *set_options(settings))
-        return self.add(name, [self._content(job, settings), tune[1:], self.QUIET],
-                        [tune, *(run_commands(self.program, tuned, self.QUIET, True) if run else [])])
+        content, inputs = self._content(job, settings)
+        return self.add(name, [content, tune[1:], self.QUIET],
+                        [tune, *(run_commands(self.program, tuned, self.QUIET, True) if run else [])], inputs=inputs)
 
     def bake(self, name, surface, mesh=None):
-        """A run on the map baked from a surface file, over the mesh of another file."""
+        """A run on the map baked from a surface file, over the mesh of a job."""
         bake = self.words("bake", surface, mesh and "--mesh", mesh, "--output", f"{FOLDER}/{name}.exr")
-        return self.add(name, [[file_hash(file) for file in (surface, mesh) if file], self.QUIET],
-                        [bake, *run_commands(self.program, f"{FOLDER}/{name}.job.toml", self.QUIET, True)])
+        content, inputs = self._content(mesh, {}) if mesh else ({}, {})
+        return self.add(name, [self.hash.file(surface), content, self.QUIET],
+                        [bake, *run_commands(self.program, f"{FOLDER}/{name}.job.toml", self.QUIET, True)],
+                        inputs={**inputs, str(surface): self.hash.seen(surface)})
 
     def highlight_study(self):
         """The separate program that measures per-vertex light, on the half donut."""
         program = self.program.parent.parent / "benchmark/tessera_highlight_study"
-        return self.add("study", file_hash(program), [[str(program)]])
+        return self.add("study", self.hash.file(program), [[str(program)]], inputs={str(program): self.hash.seen(program)})
 
     def words(self, *arguments):
         return [str(word) for word in (self.program, *arguments) if word is not None]
 
     def _content(self, job, settings):
-        return self.hash.job(effective_job(self.program, job, settings), job.parent if job else Path())
+        """What a run depends on, and its task's inputs."""
+        inputs = self.hash.inputs_of_job(job)
+        keys = effective_job(self.program, job, settings)
+        folder = job.parent if job else Path()
+        return self.hash.job(keys, folder), {**inputs, **self.hash.inputs(keys, folder)}
 
-    def add(self, name, content, commands, keep=True):
+    def add(self, name, content, commands, keep=True, inputs=None):
         """content: everything that the result depends on."""
-        self.runs.append(Run(self, name, Task(self.hash.address(content, keep), commands, keep)))
+        self.runs.append(Run(self, name, Task(self.hash.address(content, keep), commands, keep, inputs or {})))
         return self.runs[-1]
 
     @property

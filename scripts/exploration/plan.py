@@ -15,6 +15,7 @@ class Design:
     job: Path
     settings: dict
     key: str = ""
+    inputs: dict = field(default_factory=dict)  # of the task
     refused: str = ""  # why the program does not accept the job
     positions: tuple = field(default=())
 
@@ -46,6 +47,12 @@ class Planner:
         for constraint in sweep.constraints:
             for name in constraint.names - set(known):
                 raise sweep.error(f"unknown key `{name}` in a constraint", sweep.line_of(constraint.text))
+
+    def content(self):
+        """What the sweep depends on besides the program: its text, its jobs, and the files that they and the axes name."""
+        settings = [self.sweep.settings, *(point.settings for axis in self.sweep.axes for point in axis.points)]
+        return [self.sweep.text, *([self.hash.job(keys, job.parent) for keys in [effective_job(self.program, job, {}), *settings]]
+                                   for job in self.sweep.scenes.values())]
 
     @property
     def size(self):
@@ -81,6 +88,7 @@ class Planner:
 
     def complete(self, design):
         """Adds key or refusal; None if a constraint excludes the design."""
+        design.inputs = self.hash.inputs_of_job(design.job)
         try:
             keys = effective_job(self.program, design.job, design.settings)
         except Refused as refused:
@@ -89,10 +97,12 @@ class Planner:
         if not all(constraint.value(keys) for constraint in self.sweep.constraints):
             return None
         design.key = self.hash.address(self.hash.job(keys, design.job.parent), self.sweep.measures_error)
+        design.inputs.update(self.hash.inputs(keys, design.job.parent))
         return design
 
     def task(self, design):
-        return Task(design.key, run_commands(self.program, design.job, design.settings, self.sweep.measures_error), False)
+        return Task(design.key, run_commands(self.program, design.job, design.settings, self.sweep.measures_error), False,
+                    design.inputs)
 
     def grid(self, jobs):
         """All designs that the constraints allow."""

@@ -1,6 +1,7 @@
 """The program: effective jobs, addresses of results, and runs with what they leave."""
 import hashlib
 import json
+import os
 import re
 import resource
 import subprocess
@@ -11,8 +12,14 @@ from pathlib import Path
 QUIET = {"output.picture": False, "output.ply": False, "output.obj": False}
 FOLDER = "{folder}"  # in a command's arguments: the folder for its files
 
+# The folder of `data:` paths, as in the program. Absolute, and set for all processes started from here, since these have
+# other working directories.
+DATA = Path(os.environ.get("TESSERA_DATA", Path(__file__).resolve().parents[2] / "../shared/data")).resolve()
+os.environ["TESSERA_DATA"] = str(DATA)
+
 # Commands with one result. Each starts if the previous one ended with exit code 0. `kept`: their files stay in the store.
-Task = namedtuple("Task", "key commands kept")
+# `inputs`: {path: stamp} of the files they read, as they were when the key was made.
+Task = namedtuple("Task", "key commands kept inputs")
 
 
 class Refused(Exception):
@@ -58,28 +65,56 @@ def file_hash(path):
         return hashlib.file_digest(file, "sha256").hexdigest()
 
 
+def stamp(path):
+    """Changes with the file's content, in all likelihood; None if there is no such file."""
+    try:
+        status = os.stat(path)
+    except OSError:
+        return None
+    return [status.st_mtime_ns, status.st_size]
+
+
+def files_of(keys, folder):
+    """{key: files} that a run reads besides its job; `folder`: of the job. Of an earlier run it reads two."""
+    files = {}
+    for key in ("mesh.file", "map.file"):
+        if keys.get(key):
+            name = keys[key]
+            path = DATA / name.removeprefix("data:") if name.startswith("data:") else folder.resolve() / name
+            files[key] = [path / "mesh.ply", path / "job.toml"] if path.is_dir() else [path]
+    return files
+
+
 class ContentHash:
     """Addresses of results: hashes of the program and of its commands' inputs."""
 
     def __init__(self, program):
-        self.version = file_hash(program)
-        self.files = {}
+        self.program = Path(program)
+        self.stamps, self.files = {}, {}
+        self.version = self.file(self.program)
 
-    def _file(self, name, folder):
-        path = Path(name.removeprefix("data:")) if name.startswith("data:") else folder / name
-        if path.is_dir():
-            path = path / "mesh.ply"
+    def seen(self, path):
+        """The file's stamp at its first use."""
+        return self.stamps.setdefault(str(path), stamp(path))
+
+    def file(self, path):
+        self.seen(path)
         if path not in self.files:
             self.files[path] = file_hash(path) if path.is_file() else "absent"
         return self.files[path]
 
     def job(self, keys, folder):
-        """The inputs of a run: its effective job, and the content of the files it names, relative to the folder."""
-        content = {key: value for key, value in keys.items() if key != "output.folder"}
-        for key in ("mesh.file", "map.file"):
-            if content.get(key):
-                content[key] = self._file(content[key], folder)
-        return content
+        """The inputs of a run: its effective job, and the content of the files it names."""
+        files = {key: [self.file(path) for path in paths] for key, paths in files_of(keys, folder).items()}
+        return {**{key: value for key, value in keys.items() if key != "output.folder"}, **files}
+
+    def inputs_of_job(self, job):
+        """Stamps of the program and of a job's file, to be taken before the program reads it; job: None for the default."""
+        return {str(path): self.seen(path) for path in (self.program, job) if path}
+
+    def inputs(self, keys, folder):
+        """Stamps of the files that a job names."""
+        return {str(path): self.seen(path) for paths in files_of(keys, folder).values() for path in paths}
 
     def address(self, *content):
         return hashlib.sha256(json.dumps([self.version, *content], sort_keys=True).encode()).hexdigest()[:32]
@@ -98,7 +133,7 @@ def run(task, folder, longest):
     """The result of a task: exit code, reason of a failure, figures, timing table, seconds of processor time, and the
     output of a task without figures.
 
-    Raises OSError or subprocess.TimeoutExpired if a command did not end by itself.
+    Raises OSError if a command did not end by itself or a file it read has changed, subprocess.TimeoutExpired.
     """
     begin = resource.getrusage(resource.RUSAGE_CHILDREN)
     for command in task.commands:
@@ -109,6 +144,9 @@ def run(task, folder, longest):
             raise OSError(f"signal {-done.returncode} ended the program")
         if done.returncode > 0:
             break
+    for path, before in task.inputs.items():
+        if stamp(path) != before:
+            raise OSError(f"{path} was changed since this began; start it again")
     end = resource.getrusage(resource.RUSAGE_CHILDREN)
     place = Path(folder, "run")
     figures = {**figures_of(place / "statistics.json"), **figures_of(place / "conformance.json"),

@@ -27,8 +27,8 @@ def open_study(planner, storage, number):
     # Every worker samples different designs.
     sampler = optuna.samplers.TPESampler(seed=sweep.search["seed"] + number, multivariate=True, constant_liar=True,
                                          n_startup_trials=max(10, 2 * len(sweep.axes)))
-    # Another program or sweep file is a separate study, since its designs have other results.
-    name = f"{sweep.name} {planner.hash.address(sweep.text)}"
+    # Another program, sweep file or input is a separate study, since its designs have other results.
+    name = f"{sweep.name} {planner.hash.address(planner.content())}"
     return optuna.create_study(study_name=name, storage=storage, load_if_exists=True, sampler=sampler,
                                directions=["minimize"] * len(sweep.objectives))
 

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <fstream>
 #include <iostream>
@@ -128,6 +129,97 @@ TEST_CASE("sweep: each design is a row, the front is marked, a failed run is a r
     CHECK_THAT(checkout.run("scripts/sweep small.toml --check").err, Contains("9 designs; 8 runs to do"));
 }
 
+TEST_CASE("sweep: a result is named by the content of every file that it depends on") {
+    if (!sweeps_run())
+        return;
+    const Checkout checkout;
+    const fs::path root = checkout.root(), data = root / "../shared/data";
+    fs::create_directories(data);
+    const std::string square =
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n";
+    const std::string map = "P2\n2 2\n255\n0 90 0 0\n";
+    write_all(data / "map.pgm", map);
+    write_all(data / "mesh.obj", square);
+    write_all(root / "mesh.obj", square);
+    write_all(root / "map.pgm", map);
+    write_all(root / "one.toml",
+              "mode = \"functional\"\n[mesh]\nfile = \"mesh.obj\"\n[map]\nfile = \"data:map.pgm\"\n");
+    write_all(root / "two.toml",
+              "mode = \"functional\"\n[mesh]\nfile = \"data:mesh.obj\"\n[map]\nfile = \"map.pgm\"\n");
+    write_all(root / "three.toml",
+              "mode = \"functional\"\n[mesh]\nsource = \"run\"\nfile = \"earlier\"\n[map]\nsource = \"constant\"\n");
+    REQUIRE(checkout.run("scripts/run one.toml --set output.folder=earlier").exit_code == 0);
+    const std::string three_jobs =
+        "scenes = [\"one.toml\", \"two.toml\", \"three.toml\"]\nfigures = [\"mesh.triangles\"]\n"
+        "[[axis]]\nkey = \"check.work\"\nvalues = [true]\n";
+    const ProgramEnd first = sweep(checkout, three_jobs);
+    INFO(first.text());
+    REQUIRE(first.exit_code == 0);
+    const auto to_do = [&](const std::string& environment) {
+        const ProgramEnd end = checkout.run(environment + "scripts/sweep small.toml --check");
+        INFO(end.text());
+        CHECK(end.exit_code == 0);
+        return end.err;
+    };
+    CHECK_THAT(to_do(""), Contains("; 0 runs to do"));
+
+    // A scene without any result is tried by --check itself: what is counted is the number of results.
+    std::size_t results = 3;
+    const auto is_another = [&](const std::string& environment) {
+        to_do(environment);
+        CHECK(results_in(root / "runs/sweeps/results") == ++results);
+    };
+    const auto is_an_input = [&](const fs::path& file, const std::string& from, const std::string& to) {
+        INFO(file.lexically_relative(root).string());
+        const std::string before = read_all(file);
+        write_all(file, replaced(before, from, to));
+        is_another("");
+        write_all(file, before);
+        CHECK_THAT(to_do(""), Contains("; 0 runs to do"));
+        CHECK(results_in(root / "runs/sweeps/results") == results);
+    };
+    is_an_input(data / "map.pgm", "90", "91");
+    is_an_input(data / "mesh.obj", "v 1 1 0", "v 1 2 0");
+    is_an_input(root / "map.pgm", "90", "91");
+    is_an_input(root / "mesh.obj", "v 1 1 0", "v 1 3 0");
+    is_an_input(root / "one.toml", "[map]", "[displacement]\nscale = 0.5\n[map]");
+    is_an_input(root / "earlier/mesh.ply", "comment base", "comment  base");
+    is_an_input(root / "earlier/job.toml", "viewport_width = 1024", "viewport_width = 1023");
+
+    INFO("the same names in another data folder, named from here, not from a run's folder");
+    fs::create_directories(root / "other");
+    write_all(root / "other/map.pgm", replaced(map, "90", "92"));
+    write_all(root / "other/mesh.obj", square);
+    is_another("TESSERA_DATA=other ");
+    CHECK_THAT(to_do("TESSERA_DATA=other "), Contains("; 0 runs to do"));
+}
+
+TEST_CASE("sweep: a run during which an input changes has no result") {
+    if (!sweeps_run())
+        return;
+    const Checkout checkout;
+    const fs::path program = checkout.root() / "build/release/testbench/commands/tessera";
+    const std::string changed =
+        GENERATE(as<std::string>(), "map.pgm", "one.toml", "build/release/testbench/commands/tessera");
+    fs::remove(program);
+    write_all(
+        program,
+        "#!/bin/sh\ncase \"$*\" in *--dump-config*) ;; *output.folder*) touch -d 2001-01-01 \"$CHANGED\" ;; esac\nexec \"" +
+            tessera_program().string() + "\" \"$@\"\n");
+    fs::permissions(program, fs::perms::owner_all);
+    write_all(checkout.root() / "map.pgm", "P2\n2 2\n255\n0 90 0 0\n");
+    write_all(checkout.root() / "one.toml", "mode = \"functional\"\n[map]\nfile = \"map.pgm\"\n");
+    write_all(checkout.root() / "small.toml",
+              "job = \"one.toml\"\nfigures = [\"mesh.triangles\"]\n[[axis]]\nkey = \"check.work\"\nvalues = [true]\n");
+    const ProgramEnd end = checkout.run("CHANGED=$PWD/" + changed + " scripts/sweep small.toml");
+    INFO(changed << end.text());
+    CHECK(end.exit_code == 1);
+    CHECK_THAT(end.err, Contains("1 no result"));
+    CHECK(results_in(checkout.root() / "runs/sweeps/results") == 0);
+    CHECK_THAT(read_all(checkout.root() / "runs/sweeps/small/table.csv"),
+               Contains(changed + " was changed since this began; start it again"));
+}
+
 TEST_CASE("sweep: a run that does not end is a row, and is tried again") {
     if (!sweeps_run())
         return;
@@ -161,6 +253,85 @@ TEST_CASE("sweep: workers that share a study search some of the designs, each ru
         checkout.run("sed -i 's/1, 2, 4/3, 6, 8/' small.toml; scripts/sweep small.toml --search --workers 2" + storage);
     INFO(other.text());
     CHECK(other.exit_code == 0);
+}
+
+TEST_CASE("sweep: the study of a search is another one if a file that its jobs or axes name changes") {
+    const Checkout checkout;
+    const fs::path root = checkout.root();
+    for (const char* const name : {"a.pgm", "b.pgm"})
+        write_all(root / name, "P2\n2 2\n255\n0 90 0 0\n");
+    write_all(root / "one.toml", "[map]\nfile = \"a.pgm\"\n");
+    write_all(root / "small.toml",
+              "job = \"one.toml\"\n[[axis]]\nkey = \"map.file\"\nvalues = [\"a.pgm\", \"b.pgm\"]\n");
+    write_all(root / "name.py",
+              "import sys\nfrom pathlib import Path\nsys.path.append('scripts/exploration')\n"
+              "from plan import Planner\nfrom sweep_file import read_sweep\n"
+              "planner = Planner(read_sweep(Path('small.toml')), Path('build/release/testbench/commands/tessera'))\n"
+              "print(planner.hash.address(planner.content()))\n");
+    const auto name = [&] {
+        const ProgramEnd end = checkout.run("python3 -B name.py");
+        INFO(end.text());
+        REQUIRE(end.exit_code == 0);
+        return end.out;
+    };
+    const std::string before = name();
+    CHECK(name() == before);
+    for (const char* const changed : {"a.pgm", "b.pgm", "one.toml", "small.toml"}) {
+        INFO(changed);
+        const std::string text = read_all(root / changed);
+        write_all(root / changed, text + "# another\n" + (changed == std::string("one.toml") ? "width = 3\n" : ""));
+        CHECK(name() != before);
+        write_all(root / changed, text);
+    }
+    CHECK(name() == before);
+}
+
+TEST_CASE("figures: a result is named by the content of every file that it depends on") {
+    const Checkout checkout;
+    const fs::path root = checkout.root();
+    for (const char* const folder : {"jobs", "../shared/data", "build/release/testbench/benchmark"})
+        fs::create_directories(root / folder);
+    write_all(root / "jobs/one.toml", "[mesh]\nfile = \"mesh.obj\"\n[map]\nfile = \"data:map.pgm\"\n");
+    write_all(root / "jobs/mesh.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n");
+    write_all(root / "../shared/data/map.pgm", "P2\n2 2\n255\n0 90 0 0\n");
+    write_all(root / "surface.toml", "a surface");
+    write_all(root / "build/release/testbench/benchmark/tessera_highlight_study", "a program");
+    write_all(
+        root / "keys.py",
+        "import sys\nfrom argparse import Namespace\nfrom pathlib import Path\n"
+        "sys.path[:0] = ['scripts/evaluation', 'scripts/exploration']\n"
+        "sys.modules['emitted_mesh'] = Namespace(read_mesh=None)  # needs numpy\n"
+        "import study\nfrom program import ContentHash\nfrom store import Store\n"
+        "study.JOBS = Path('jobs').resolve()\nprogram = Path('build/release/testbench/commands/tessera').absolute()\n"
+        "one = study.Study('s', Namespace(program=program, picture_width=8), Store('results'), ContentHash(program))\n"
+        "run = one.run('run', 'one')\nrun.render('shaded')\n"
+        "one.tune('tune', 9, 'one')\none.bake('bake', Path('surface.toml').resolve(), study.JOBS / 'one.toml')\n"
+        "one.highlight_study()\n"
+        "for each in [*one.runs]:\n    print(each.task.key)\n    assert each.task.inputs or each.name == 'run'\n");
+    const auto keys = [&] {
+        const ProgramEnd end = checkout.run("python3 -B keys.py");
+        INFO(end.text());
+        REQUIRE(end.exit_code == 0);
+        return lines_of(end.out);
+    };
+    const std::vector<std::string> before = keys();
+    REQUIRE(before.size() == 5);
+    // run, its picture, tune, bake, highlight study
+    using Row = std::pair<const char*, std::vector<std::size_t>>;
+    for (const auto& [file, others] :
+         {Row{"../shared/data/map.pgm", {0, 1, 2, 3}}, Row{"jobs/mesh.obj", {0, 1, 2, 3}}, Row{"surface.toml", {3}},
+          Row{"build/release/testbench/benchmark/tessera_highlight_study", {4}}}) {
+        INFO(file);
+        const std::string text = read_all(root / file);
+        write_all(root / file, text + "#\n");
+        const std::vector<std::string> after = keys();
+        for (std::size_t k = 0; k < before.size(); ++k) {
+            INFO(k);
+            CHECK((after.at(k) != before[k]) == (std::count(others.begin(), others.end(), k) > 0));
+        }
+        write_all(root / file, text);
+    }
+    CHECK(keys() == before);
 }
 
 TEST_CASE("sweep: the error of each design is measured if a figure needs it") {
