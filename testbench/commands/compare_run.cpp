@@ -27,7 +27,7 @@ ExitCode compare_run(const std::filesystem::path& run_folder, const std::filesys
 
     const std::string text = error_text(run.job, run.mesh, error);
     AtomicSet files;
-    write_file(run.folder / "error.json", statistics_json(error_figures(run.mesh, error)));
+    write_file(run.folder / "error.json", statistics_json(error_figures(run.job, run.mesh, error)));
     write_file(run.folder / "error.txt", text);
     files.commit();
     fmt::print("{}\n  error.json and error.txt in {}\n", text,

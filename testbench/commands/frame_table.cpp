@@ -20,7 +20,7 @@ std::string traffic_text(const HostTraffic& sent) {
     };
     add("displacement map", sent.displacement_map);
     add("normal map", sent.normal_map);
-    add("Summed Height Table", sent.summed_height_table);
+    add("height test's table", sent.summed_height_table);
     add("registers", sent.registers);
     return text;
 }

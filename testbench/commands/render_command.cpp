@@ -122,6 +122,7 @@ ExitCode render_command(const RenderRequest& asked, const fs::path& data_folder)
     const View camera = choose_camera(request, run.job);
     check_output_folder(output.folder, "--output");
     RenderMesh mesh = make_render_mesh(run.mesh);
+    mesh.height_test = run.job.hardware.height_test;
     check_size(request, mesh, camera);
 
     Progress progress;

@@ -9,6 +9,7 @@
 
 #include "modules/datapath/widths.h"
 #include "testbench/common/grouped_digits.h"
+#include "testbench/machine/deciding_test.h"
 #include "testbench/machine/totals.h"
 #include "testbench/output/report/area.h"
 #include "testbench/output/report/ratio.h"
@@ -99,9 +100,7 @@ std::string checks_rows(const Checks& checks) {
 }
 
 std::string height_test_text(const MachineSetup& setup) {
-    std::string text(name_of(setup.registers.formats.height_test));
-    std::replace(text.begin(), text.end(), '_', ' ');
-    return text;
+    return words_of(setup.registers.formats.height_test);
 }
 
 /// Repeated work, compared with the minimum for this mesh.

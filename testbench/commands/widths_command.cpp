@@ -81,6 +81,16 @@ WidthRequest request_of(const WidthsOrder& order, const fs::path& data_folder) {
             fmt::format("frames.count = {}: widths are swept for one frame; use --set frames.count=1, and --set "
                         "displacement.scale for the frame",
                         request.job.frames.count));
+    // The exact model has the Summed Height Test and the map's own heights only.
+    if (request.job.tests.summed_height && request.job.hardware.height_test != HeightTest::summed_height)
+        throw InputError(
+            fmt::format("hardware.height_test = \"{}\": widths compares with exact arithmetic, which is there for the "
+                        "Summed Height Test only; use --set hardware.height_test=summed_height, or without a height "
+                        "test --set tests.summed_height=false",
+                        name_of(request.job.hardware.height_test)));
+    if (request.job.map.heights == MapHeights::fitted)
+        throw InputError(
+            "map.heights = \"fitted\": widths compares with the map's own heights; use --set map.heights=given");
     request.threads = order.jobs;
     request.most_flips = order.most_flips;
     request.most_error = order.most_error;

@@ -1,14 +1,24 @@
 #pragma once
+#include <algorithm>
 #include <cstdint>
+#include <string>
 
 #include "modules/datapath/vertex.h"
+#include "modules/timing/height_test_kind.h"
 
 namespace tessera {
 
-/// The tests that split a triangle's parent. NT and SHT are bits as in split_by; highlight: only the Highlight Test
+/// The tests that split a triangle's parent. NT and SHT, or its replacement, are bits as in split_by; highlight: only the Highlight Test
 /// requested the split.
 enum class DecidingTest : std::uint8_t { base = 0, normal = 1, summed_height = 2, both = 3, highlight = 4 };
 inline constexpr unsigned deciding_tests = 5;
+
+/// The height test's name in words, "summed height" for the Summed Height Test.
+inline std::string words_of(datapath::HeightTest test) {
+    std::string text(name_of(test));
+    std::replace(text.begin(), text.end(), '_', ' ');
+    return text;
+}
 
 /// From a triangle's split_by.
 constexpr DecidingTest deciding_test_of(std::uint8_t split_by) {

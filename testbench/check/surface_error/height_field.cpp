@@ -23,18 +23,40 @@ struct Band {
     }
 };
 
-/// Calls at(x, y, height) for the band's grid points under a triangle, including its border.
+/// Calls at(x, y, height) for the band's grid points under a triangle, including its border; with a margin, in texels,
+/// also for those beside it, with the height at about the triangle's nearest point.
 template <class At>
-void cover(const HeightField& field, const std::array<glm::dvec3, 3>& corners, const Band& band, At&& at) {
+void cover(const HeightField& field, const std::array<glm::dvec3, 3>& corners, const Band& band, double margin,
+           At&& at) {
     std::array<glm::dvec2, 3> texel;
     std::array<double, 3> height{};
     for (std::size_t k = 0; k < 3; ++k) {
         texel[k] = field.texel(corners[k]);
         height[k] = field.height(corners[k]);
     }
-    for_texel_centres(texel, band.columns, band.rows, [&](std::int64_t x, std::int64_t y, const glm::dvec3& b) {
-        at(x, y, b.x * height[0] + b.y * height[1] + b.z * height[2]);
-    });
+    for_texel_centres(
+        texel, band.columns, band.rows,
+        [&](std::int64_t x, std::int64_t y, glm::dvec3 b) {
+            if (margin > 0) {
+                b = glm::max(b, 0.0);
+                b /= b.x + b.y + b.z;
+            }
+            at(x, y, b.x * height[0] + b.y * height[1] + b.z * height[2]);
+        },
+        margin);
+}
+
+/// How far rounding moved the emitted mesh's vertices along the plane, in texels: the largest distance between a
+/// vertex's place and its texture coordinate, which a repeating map may have taken back by whole periods.
+double moved_by_rounding(const HeightField& field, const HeightMap& map, const RecordedMesh& mesh) {
+    const glm::dvec2 size(map.width, map.height);
+    double most = 0;
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+        glm::dvec2 apart = field.texel(mesh.positions[v]) - mesh.textures[v] * size;
+        apart -= size * glm::round(apart / size);
+        most = std::max(most, glm::length(apart));
+    }
+    return std::min(most, 0.5);
 }
 
 }  // namespace
@@ -134,6 +156,7 @@ VerticalError measure_vertical_error(const HeightField& field, const BaseMesh& b
         throw ResourceError(
             "the base mesh repeats the map so often that it has more than 2^32 grid points: compare a "
             "run with fewer repetitions");
+    const double margin = moved_by_rounding(field, map, mesh);
     const std::int64_t band_rows = std::max<std::int64_t>(1, most_cells / width);
     constexpr float outside = -2, uncovered = -1;  // other values are errors
     std::vector<float> errors, pixels;             // per grid point
@@ -152,11 +175,11 @@ VerticalError measure_vertical_error(const HeightField& field, const BaseMesh& b
         pixels.assign(view != nullptr ? errors.size() : 0, outside);
         for (const auto& t : base.triangles)
             cover(field, {base.vertices[t[0]].position, base.vertices[t[1]].position, base.vertices[t[2]].position},
-                  band, [&](std::int64_t x, std::int64_t y, double) { errors[band.index(x, y)] = uncovered; });
-        for (std::size_t k = 0; k < mesh.triangles.size(); ++k) {
-            cover(field, mesh.corners(mesh.triangles[k]), band, [&](std::int64_t x, std::int64_t y, double at) {
+                  band, 0, [&](std::int64_t x, std::int64_t y, double) { errors[band.index(x, y)] = uncovered; });
+        const auto measure = [&](std::size_t k, double beside, float below_error) {
+            cover(field, mesh.corners(mesh.triangles[k]), band, beside, [&](std::int64_t x, std::int64_t y, double at) {
                 float& error = errors[band.index(x, y)];
-                if (error == outside)
+                if (error == outside || error >= below_error)
                     return;
                 const double wanted = displacement.of(
                     static_cast<double>(map.at(static_cast<int>(addressed(x, map.width, displacement.address_u)),
@@ -177,7 +200,13 @@ VerticalError measure_vertical_error(const HeightField& field, const BaseMesh& b
                     seen = std::max(seen, static_cast<float>(*apart));
                 }
             });
-        }
+        };
+        for (std::size_t k = 0; k < mesh.triangles.size(); ++k)
+            measure(k, 0, std::numeric_limits<float>::infinity());
+        // Rounding may have moved the mesh's border off the grid points that lie on it, as a lattice's do.
+        if (std::find(errors.begin(), errors.end(), uncovered) != errors.end())
+            for (std::size_t k = 0; k < mesh.triangles.size(); ++k)
+                measure(k, margin, 0);
         for (const float error : errors) {
             result.grid_points += error == outside ? 0 : 1;
             if (error < 0)

@@ -32,7 +32,8 @@ std::optional<HeightField> find_height_field(const BaseMesh& base, const HeightM
 
 /// The error measure of terrain simplification: at every grid point of the map (a texel's centre), the difference
 /// between the mesh's height over the plane and the map's value. Both sampling methods agree at texel centres. A grid
-/// point under several triangles (a shared edge, a fold) counts with its largest error. On a repeated axis every copy
+/// point under several triangles (a shared edge, a fold) counts with its largest error; one that rounding has left just
+/// beside the mesh's border, with the mesh's nearest height. On a repeated axis every copy
 /// of the map on the base mesh counts.
 struct VerticalError {
     std::uint64_t grid_points = 0;          ///< texel centres on the base mesh

@@ -59,6 +59,8 @@ class Measurement {
                 const RecordedMesh& mesh, const MeasureLimits& limits)
         : mesh_(mesh),
           limits_(limits),
+          beyond_u_(base.beyond_map && displacement.address_u == Addressing::clamp),
+          beyond_v_(base.beyond_map && displacement.address_v == Addressing::clamp),
           frame_(frame_about(base, mesh)),
           surface_(base, map, displacement, frame_),
           lattice_(surface_, limits.reference_samples),
@@ -74,6 +76,9 @@ class Measurement {
 
     double reference_density() const { return lattice_.density(); }
     double mesh_density() const { return samples_.density(); }
+    std::uint64_t samples_beyond_map(const SurfaceError& measured) const {
+        return lattice_.samples() - measured.reference_to_mesh.samples;
+    }
 
     SurfaceError measure(Sampling sampling) {
         SurfaceError error;
@@ -86,6 +91,28 @@ class Measurement {
     }
 
   private:
+    /// Whether a sample counts: it lies on the map.
+    bool on_map(const glm::dvec2& texture) const {
+        constexpr double border = 1 + 1e-9;
+        return !(beyond_u_ && texture.x > border) && !(beyond_v_ && texture.y > border);
+    }
+
+    std::uint64_t lattice_samples() const {
+        if (!beyond_u_ && !beyond_v_)
+            return lattice_.samples();
+        std::uint64_t count = 0;
+        for (std::size_t k = 0; k < surface_.triangles(); ++k) {
+            const DisplacedSurface::Corners corners = surface_.corners(k);
+            const std::uint32_t n = lattice_.subdivision(k);
+            for (std::uint32_t j = 0; j <= n; ++j)
+                for (std::uint32_t i = 0; i + j <= n; ++i)
+                    if (on_map(surface_.texture(
+                            DisplacedSurface::texel(corners, glm::dvec3(n - i - j, i, j) / static_cast<double>(n)))))
+                        ++count;
+        }
+        return count;
+    }
+
     /// The largest squared distance and where it is; the first of equal ones.
     struct Worst {
         double squared = -1;
@@ -122,7 +149,7 @@ class Measurement {
 
     std::vector<BoxHierarchy::Box> from_reference(Sampling sampling, SurfaceError& error) {
         DirectedError& result = error.reference_to_mesh;
-        result.samples = lattice_.samples();
+        result.samples = lattice_samples();
         if (soup_.empty() && surface_.triangles() > 0)
             result.max = result.rms = infinity;
         const std::size_t tiles = lattice_.tiles().size();
@@ -138,11 +165,13 @@ class Measurement {
                 for (std::size_t tile = chunk * chunk_tiles; tile < end; ++tile) {
                     double squares = 0, weights = 0;
                     boxes[tile] = walk.measure(tile, [&](const ReferenceToMesh::Sample& sample) {
-                        squares += sample.weight * sample.squared;
-                        weights += sample.weight;
                         float& of_triangle = largest[sample.triangle];
                         of_triangle =
                             std::max(of_triangle, static_cast<float>(std::sqrt(sample.squared) / frame_.scale));
+                        if (!on_map(sample.texture))
+                            return;
+                        squares += sample.weight * sample.squared;
+                        weights += sample.weight;
                         part.worst.take(sample.squared, sample.position, sample.texture, sample.triangle);
                     });
                     part.squares.push_back(squares);
@@ -211,8 +240,10 @@ class Measurement {
         const auto& corners = soup_[k];
         const auto measure = [&](const glm::dvec3& local, const glm::dvec2& texture) {
             const double squared = nearest.squared_distance(local);
-            ++part.samples;
-            part.worst.take(squared, local, texture, k);
+            if (on_map(texture)) {
+                ++part.samples;
+                part.worst.take(squared, local, texture, k);
+            }
             return squared;
         };
         for (std::size_t c = 0; c < 3; ++c) {
@@ -222,22 +253,31 @@ class Measurement {
             if (first_user[vertex] == k && !earlier)
                 error.vertices[vertex] = std::sqrt(measure(corners[c], mesh_.textures[vertex])) / frame_.scale;
         }
-        double largest_squared = 0, squares = 0;
+        double largest_squared = 0, squares = 0, squares_on_map = 0, count_on_map = 0;
+        const auto texture = [&](const glm::dvec3& b) {
+            return b.x * mesh_.textures[t.vertices[0]] + b.y * mesh_.textures[t.vertices[1]] +
+                   b.z * mesh_.textures[t.vertices[2]];
+        };
         const auto take = [&](const glm::dvec3& b) {
-            const double squared = measure(b.x * corners[0] + b.y * corners[1] + b.z * corners[2],
-                                           b.x * mesh_.textures[t.vertices[0]] + b.y * mesh_.textures[t.vertices[1]] +
-                                               b.z * mesh_.textures[t.vertices[2]]);
+            const double squared = measure(b.x * corners[0] + b.y * corners[1] + b.z * corners[2], texture(b));
             largest_squared = std::max(largest_squared, squared);
             return squared;
         };
         const std::uint32_t sides = samples_.subdivision(k);
         if (sides % 3 == 0)  // otherwise it is the centroid of a part
             take(glm::dvec3(1.0 / 3));
-        MeshSamples::for_each_part(sides, [&](const glm::dvec3& b) { squares += take(b); });
+        MeshSamples::for_each_part(sides, [&](const glm::dvec3& b) {
+            const double squared = take(b);
+            squares += squared;
+            if (on_map(texture(b))) {
+                squares_on_map += squared;
+                ++count_on_map;
+            }
+        });
         const double count = static_cast<double>(sides) * static_cast<double>(sides);
         const double area = glm::length(glm::cross(corners[1] - corners[0], corners[2] - corners[0]));
-        part.squares += area * (squares / count);
-        part.areas += area;
+        part.squares += area * (squares_on_map / count);
+        part.areas += count_on_map == count ? area : area * (count_on_map / count);
         error.triangles[k].max = static_cast<float>(std::sqrt(largest_squared) / frame_.scale);
         error.triangles[k].rms = static_cast<float>(std::sqrt(squares / count) / frame_.scale);
     }
@@ -250,6 +290,7 @@ class Measurement {
 
     const RecordedMesh& mesh_;
     MeasureLimits limits_;
+    bool beyond_u_, beyond_v_;  // the base mesh may extend beyond the map, which clamps
     LocalFrame frame_;
     DisplacedSurface surface_;
     ReferenceLattice lattice_;
@@ -277,6 +318,7 @@ MeshError measure_error(const BaseMesh& base, const HeightMap& map, const Displa
     error.reference_density = measurement.reference_density();
     error.mesh_density = measurement.mesh_density();
     error.interpolated = measurement.measure(Sampling::interpolated);
+    error.beyond_map = measurement.samples_beyond_map(error.interpolated);
     error.nearest_texel = measurement.measure(Sampling::nearest_texel);
     if (const auto field = find_height_field(base, map, displacement, error.no_vertical))
         error.vertical = measure_vertical_error(*field, base, map, displacement, mesh, limits.view);

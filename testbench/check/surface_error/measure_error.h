@@ -29,6 +29,9 @@ namespace tessera {
 ///                         longer than a texel along u, along v or in space. RMS over the parts, weighted by their area
 ///                         on the emitted mesh; vertices and centroids count for the maximum only.
 ///
+/// Where a base mesh extends beyond a map that clamps (BaseMesh::beyond_map), samples beyond it do not count: nothing
+/// in the map is there. They are part of the errors of single vertices and triangles, which pictures show.
+///
 /// All sums are formed in a fixed order in double precision: the result is bit-identical on any number of threads.
 struct MeasureLimits {
     /// 8.4 million: 724 x 724 texels at full density. Exceeded only to give each base triangle three.
@@ -73,6 +76,7 @@ struct MeshError {
     double texel = 1;              ///< a texel's length, model units (texel_length())
     double reference_density = 0;  ///< minimum samples per texel along an axis; 4 unless the limit lowered it
     double mesh_density = 0;       ///< minimum parts per texel along an edge; 1 unless the limit lowered it
+    std::uint64_t beyond_map = 0;  ///< samples of the reference beyond the map, which do not count
     SurfaceError interpolated, nearest_texel;
     std::optional<VerticalError> vertical;  ///< for height fields
     std::string no_vertical;                ///< the reason if there is none

@@ -89,11 +89,12 @@ ExactModel::ExactModel(const Job& job, const BaseMesh& original, const HeightMap
                            {texels / map.width, texels / map.height});
     base_.reserve(mesh.triangles.size());
     for (const auto& corners : mesh.triangles)
-        base_.push_back({base_vertex(mesh.vertices[corners[0]]), base_vertex(mesh.vertices[corners[1]]),
-                         base_vertex(mesh.vertices[corners[2]])});
+        base_.push_back({base_vertex(mesh.vertices[corners[0]], mesh.beyond_map),
+                         base_vertex(mesh.vertices[corners[1]], mesh.beyond_map),
+                         base_vertex(mesh.vertices[corners[2]], mesh.beyond_map)});
 }
 
-golden::Vertex ExactModel::base_vertex(const BaseVertex& vertex) const {
+golden::Vertex ExactModel::base_vertex(const BaseVertex& vertex, bool beyond_map) const {
     const glm::dvec2 size(map_.width(), map_.height());
     golden::Vertex result;
     result.position = model_scale_.to_world(vertex.position);
@@ -101,9 +102,9 @@ golden::Vertex ExactModel::base_vertex(const BaseVertex& vertex) const {
     result.tangent = vertex.tangent;
     result.handedness = vertex.handedness < 0 ? -1 : 1;
     result.texture = exact_texels(vertex.texture * size);
-    if (map_.address_u() == golden::AddressMode::clamp)
+    if (!beyond_map && map_.address_u() == golden::AddressMode::clamp)
         result.texture.x = std::clamp(result.texture.x, 0.0, size.x);
-    if (map_.address_v() == golden::AddressMode::clamp)
+    if (!beyond_map && map_.address_v() == golden::AddressMode::clamp)
         result.texture.y = std::clamp(result.texture.y, 0.0, size.y);
     return golden::complete_base_vertex(result, map_, parameters_);
 }

@@ -31,7 +31,7 @@ class ExactModel {
     std::uint64_t triangles(std::uint64_t bound) const;
 
   private:
-    golden::Vertex base_vertex(const BaseVertex& vertex) const;
+    golden::Vertex base_vertex(const BaseVertex& vertex, bool beyond_map) const;
 
     golden::Map map_;
     golden::Parameters parameters_;

@@ -47,11 +47,11 @@ Legend generation_legend(const RenderMesh& mesh) {
 
 Legend test_legend(const RenderMesh& mesh) {
     Legend legend{"split by", {}};
-    const auto add = [&](DecidingTest test, const char* name) {
+    const auto add = [&](DecidingTest test, const std::string& name) {
         legend.entries.push_back({deciding_test_colour(test), name});
     };
     add(DecidingTest::normal, "normal");
-    add(DecidingTest::summed_height, "summed height");
+    add(DecidingTest::summed_height, words_of(mesh.height_test));
     add(DecidingTest::both, "both");
     if (std::any_of(mesh.triangles.begin(), mesh.triangles.end(), [](const RenderMesh::Triangle& triangle) {
             return triangle.deciding_test == DecidingTest::highlight;

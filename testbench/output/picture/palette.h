@@ -16,7 +16,7 @@ Colour generation_colour(unsigned generation);
 /// From the palette of Okabe and Ito, safe for the colour-blind.
 Colour deciding_test_colour(DecidingTest test);
 
-/// The tests that kept a triangle's edges whole although the Normal, Summed Height or Highlight Test requested a split.
+/// The tests that kept a triangle's edges whole although another test requested a split.
 enum class Stop : std::uint8_t { none, view, tex_coord, generation, several };
 inline constexpr unsigned stops = 5;
 

@@ -25,7 +25,8 @@ struct RenderMesh {
     std::vector<glm::vec3> normals;    ///< N', about unit length; zero where the hardware had none
     std::vector<Triangle> triangles;
     std::vector<float> triangle_errors;  ///< each triangle's distance to a reference, model units; empty: unknown
-    std::uint64_t base_triangles = 0;    ///< number of their base triangles, for the legend; 0: unknown
+    datapath::HeightTest height_test = datapath::HeightTest::summed_height;  ///< the run's, for the legend
+    std::uint64_t base_triangles = 0;  ///< number of their base triangles, for the legend; 0: unknown
 };
 
 /// From a run's mesh.ply. Vertices are shared if position and normal agree, in order of first use.

@@ -4,11 +4,30 @@
 
 #include <cmath>
 
+#include "modules/timing/height_test_kind.h"
+
 namespace tessera {
 
 namespace {
 
-std::string why_whole(unsigned stopped_by) {
+const char* height_test_of(const Job& job) {
+    return kind_of(job.hardware.height_test).title;
+}
+
+/// The job's tests that request splits.
+std::string requesting_tests(const Job& job) {
+    std::string text;
+    const auto add = [&](bool on, const char* name) {
+        if (on)
+            text += (text.empty() ? "" : " nor ") + std::string(name);
+    };
+    add(job.tests.normal, "Normal Test");
+    add(job.tests.summed_height, height_test_of(job));
+    add(job.tests.highlight, "Highlight Test");
+    return text;
+}
+
+std::string why_whole(const Job& job, unsigned stopped_by) {
     std::string text;
     const auto add = [&](unsigned bit, const char* name) {
         if ((stopped_by & bit) != 0)
@@ -17,7 +36,13 @@ std::string why_whole(unsigned stopped_by) {
     add(4, "View Test");
     add(8, "Tex Coord Test");
     add(16, "Generation Test");
-    return text.empty() ? "none: neither Normal Test nor Summed Height Test requested a split" : text;
+    if (!text.empty())
+        return text;
+    const std::string tests = requesting_tests(job);
+    if (tests.empty())
+        return "none: every test that requests splits is off";
+    return fmt::format("none: {}{} requested a split",
+                       tests.find(" nor ") == std::string::npos ? "not even the " : "neither ", tests);
 }
 
 void add_direction(FigureGroup& figures, const std::string& name, const char* words, const DirectedError& error,
@@ -46,21 +71,22 @@ void add_place(FigureGroup& figures, const glm::dvec3& position) {
     figures.add("z", position.z, "model unit", "likewise");
 }
 
-void add_triangle(FigureGroup& figures, std::uint64_t number, const RecordedMesh::Triangle& triangle) {
+void add_triangle(FigureGroup& figures, const Job& job, std::uint64_t number, const RecordedMesh::Triangle& triangle) {
     figures.add("triangle", number, "-", "the emitted triangle there, its index in mesh.ply");
     figures.add("base", triangle.base, "-", "its base triangle");
     figures.add("generation", triangle.generation, "-", "its generation");
     figures.add("split_by", triangle.split_by, "-",
-                triangle.split_by < 32
-                    ? "tests that split its parent: 1 Normal, 2 Summed Height, 3 both, 0 base"
-                    : "tests that split its parent: 32 Highlight, plus 1 Normal, 2 Summed Height, 3 both");
+                fmt::format("tests that split its parent: {}1 Normal Test, 2 {}, 3 both{}",
+                            triangle.split_by < 32 ? "" : "32 Highlight Test, plus ", height_test_of(job),
+                            triangle.split_by < 32 ? ", 0 base" : ""));
     figures.add(
         "stopped_by", triangle.stopped_by, "-",
         "tests that stopped one of its edges from being split: sum of 4 View Test, 8 Tex Coord Test, 16 Generation Test");
-    figures.add("why_whole", why_whole(triangle.stopped_by), "-", "the same in words");
+    figures.add("why_whole", why_whole(job, triangle.stopped_by), "-", "the same in words");
 }
 
-void add_worst(std::vector<Figure>& all, const char* group, const RecordedMesh& mesh, const DirectedError& error) {
+void add_worst(std::vector<Figure>& all, const char* group, const Job& job, const RecordedMesh& mesh,
+               const DirectedError& error) {
     if (!error.worst)
         return;
     FigureGroup figures(all, group);
@@ -68,10 +94,10 @@ void add_worst(std::vector<Figure>& all, const char* group, const RecordedMesh& 
     add_place(figures, error.worst->position);
     figures.add("s", error.worst->texture.x, "-", "texture coordinate, 0..1 spans the map");
     figures.add("t", error.worst->texture.y, "-", "likewise; 0 is the bottom row");
-    add_triangle(figures, error.worst->triangle, mesh.triangles[error.worst->triangle]);
+    add_triangle(figures, job, error.worst->triangle, mesh.triangles[error.worst->triangle]);
 }
 
-void add_vertical(std::vector<Figure>& all, const RecordedMesh& mesh, const MeshError& error) {
+void add_vertical(std::vector<Figure>& all, const Job& job, const RecordedMesh& mesh, const MeshError& error) {
     FigureGroup figures(all, "vertical");
     if (!error.vertical) {
         figures.add("none", error.no_vertical, "-", "why this is not a height field");
@@ -101,7 +127,7 @@ void add_vertical(std::vector<Figure>& all, const RecordedMesh& mesh, const Mesh
     add_place(worst, vertical.worst_position);
     worst.add("u", vertical.worst_texel.x, "texel", "the grid point");
     worst.add("v", vertical.worst_texel.y, "texel", "likewise; row 0 is the bottom row");
-    add_triangle(worst, vertical.worst_triangle, mesh.triangles[vertical.worst_triangle]);
+    add_triangle(worst, job, vertical.worst_triangle, mesh.triangles[vertical.worst_triangle]);
 }
 
 std::string row(const char* name, const std::string& value) {
@@ -128,22 +154,22 @@ std::string density_text(double density, const char* per) {
                        density < 1 ? " (fewer than one: detail between them is not measured)" : "");
 }
 
-std::string triangle_text(std::uint64_t number, const RecordedMesh::Triangle& triangle) {
+std::string triangle_text(const Job& job, std::uint64_t number, const RecordedMesh::Triangle& triangle) {
     return fmt::format("triangle {} of base triangle {}, generation {}, kept whole by: {}", number, triangle.base,
-                       triangle.generation, why_whole(triangle.stopped_by));
+                       triangle.generation, why_whole(job, triangle.stopped_by));
 }
 
 std::string place_text(const glm::dvec3& position) {
     return fmt::format("({:.6g}, {:.6g}, {:.6g})", position.x, position.y, position.z);
 }
 
-std::string worst_rows(const char* name, const RecordedMesh& mesh, const DirectedError& error) {
+std::string worst_rows(const char* name, const Job& job, const RecordedMesh& mesh, const DirectedError& error) {
     if (!error.worst)
         return {};
     const WorstSpot& spot = *error.worst;
     return row(name,
                fmt::format("at {}, s t ({:.6g}, {:.6g})", place_text(spot.position), spot.texture.x, spot.texture.y)) +
-           row("", triangle_text(spot.triangle, mesh.triangles[spot.triangle]));
+           row("", triangle_text(job, spot.triangle, mesh.triangles[spot.triangle]));
 }
 
 std::string surface_rows(const char* name, const SurfaceError& error, double texel) {
@@ -154,7 +180,7 @@ std::string surface_rows(const char* name, const SurfaceError& error, double tex
 
 }  // namespace
 
-std::vector<Figure> error_figures(const RecordedMesh& mesh, const MeshError& error) {
+std::vector<Figure> error_figures(const Job& job, const RecordedMesh& mesh, const MeshError& error) {
     std::vector<Figure> all;
     FigureGroup figures(all, "measurement");
     figures.add("triangles", mesh.triangles.size(), "triangle", "of the emitted mesh, mesh.ply");
@@ -166,9 +192,9 @@ std::vector<Figure> error_figures(const RecordedMesh& mesh, const MeshError& err
                 "samples of the emitted mesh along each edge, at least; 1 unless the limit of samples lowered it");
     add_surface(all, "interpolated", error.interpolated, error.texel);
     add_surface(all, "nearest_texel", error.nearest_texel, error.texel);
-    add_worst(all, "worst_reference_to_mesh", mesh, error.interpolated.reference_to_mesh);
-    add_worst(all, "worst_mesh_to_reference", mesh, error.interpolated.mesh_to_reference);
-    add_vertical(all, mesh, error);
+    add_worst(all, "worst_reference_to_mesh", job, mesh, error.interpolated.reference_to_mesh);
+    add_worst(all, "worst_mesh_to_reference", job, mesh, error.interpolated.mesh_to_reference);
+    add_vertical(all, job, mesh, error);
     return all;
 }
 
@@ -180,12 +206,15 @@ std::string error_text(const Job& job, const RecordedMesh& mesh, const MeshError
                 fmt::format("reference {}, {}; mesh {}, {}", error.interpolated.reference_to_mesh.samples,
                             density_text(error.reference_density, "texel and axis"),
                             error.interpolated.mesh_to_reference.samples, density_text(error.mesh_density, "texel")));
+    if (error.beyond_map > 0)
+        text +=
+            row("", fmt::format("on the map; {} samples of the reference beyond it do not count", error.beyond_map));
     text += "\n" + figures_heading("texels");
     text += surface_rows("map interpolated (the headline)", error.interpolated, error.texel);
     text += surface_rows("map's nearest texel, unfiltered", error.nearest_texel, error.texel);
     text += "\n";
-    text += worst_rows("worst, reference to mesh", mesh, error.interpolated.reference_to_mesh);
-    text += worst_rows("worst, mesh to reference", mesh, error.interpolated.mesh_to_reference);
+    text += worst_rows("worst, reference to mesh", job, mesh, error.interpolated.reference_to_mesh);
+    text += worst_rows("worst, mesh to reference", job, mesh, error.interpolated.mesh_to_reference);
     text += "\n";
     if (error.vertical) {
         const VerticalError& vertical = *error.vertical;
@@ -198,7 +227,7 @@ std::string error_text(const Job& job, const RecordedMesh& mesh, const MeshError
         if (vertical.covered > 0) {
             text += row("worst, vertical", fmt::format("at {}, texel ({}, {})", place_text(vertical.worst_position),
                                                        vertical.worst_texel.x, vertical.worst_texel.y));
-            text += row("", triangle_text(vertical.worst_triangle, mesh.triangles[vertical.worst_triangle]));
+            text += row("", triangle_text(job, vertical.worst_triangle, mesh.triangles[vertical.worst_triangle]));
         }
     } else {
         text += row("vertical, at grid points", "none: " + error.no_vertical);

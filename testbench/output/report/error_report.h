@@ -12,9 +12,9 @@ namespace tessera {
 /// ("interpolated") and the other sampling method ("nearest_texel"), height fields' error at the map's grid points
 /// ("vertical"), and the places of the maxima ("worst_..."). statistics_json() turns them into a file; infinite values
 /// (no mesh) are null there.
-std::vector<Figure> error_figures(const RecordedMesh& mesh, const MeshError& error);
+std::vector<Figure> error_figures(const Job& job, const RecordedMesh& mesh, const MeshError& error);
 
-/// The same as a table for the terminal, main figure first. `job` is used for remarks.
+/// The same as a table for the terminal, main figure first. `job` is used for the tests' names and for remarks.
 std::string error_text(const Job& job, const RecordedMesh& mesh, const MeshError& error);
 
 }  // namespace tessera

@@ -15,7 +15,6 @@
 namespace tessera {
 namespace {
 
-constexpr std::array<const char*, deciding_tests> test_names = {"base", "normal", "summed_height", "both", "highlight"};
 constexpr std::size_t generations = 256;
 
 std::size_t group_of(const EmittedTriangle& triangle) {
@@ -30,7 +29,7 @@ struct Grouped {
 
 Grouped group(const EmittedMesh& mesh, const IndexedMesh& indexed) {
     Grouped result;
-    result.begins.assign(test_names.size() * generations + 1, 0);
+    result.begins.assign(deciding_tests * generations + 1, 0);
     for (const auto& t : indexed.triangles)
         ++result.begins[group_of(mesh.triangles[t.triangle]) + 1];
     for (std::size_t g = 1; g < result.begins.size(); ++g)
@@ -46,6 +45,9 @@ Grouped group(const EmittedMesh& mesh, const IndexedMesh& indexed) {
 
 void write_obj(const std::filesystem::path& path, const EmittedMesh& mesh, const MeshUnits& units) {
     const IndexedMesh indexed = IndexedMesh::from(mesh);
+    const HeightTestKind& height_test = kind_of(units.formats.height_test);
+    const std::array<std::string_view, deciding_tests> test_names = {"base", "normal", height_test.name, "both",
+                                                                     "highlight"};
     AtomicFile file(path);
     fmt::memory_buffer line;
     const auto put = [&](const auto& format, const auto&... values) {
@@ -61,9 +63,9 @@ void write_obj(const std::filesystem::path& path, const EmittedMesh& mesh, const
                     "# vt: texture coordinates, 0..1 spans the map, v = 0 is its bottom row\n"
                     "# g and usemtl <test>_g<generation>:\n"
                     "#   test: which test split the triangle's parent: normal (Normal Test),\n"
-                    "#     summed_height (Summed Height Test), both,{} or base: it is a base triangle\n"
+                    "#     {} ({}), both,{} or base: it is a base triangle\n"
                     "#   generation: of its youngest vertex, 0 for a base triangle\n"),
-        indexed.vertices.size(), indexed.triangles.size(),
+        indexed.vertices.size(), indexed.triangles.size(), height_test.name, height_test.title,
         mesh.has_highlight_splits() ? " highlight (Highlight Test alone)," : "");
     const std::vector<EmittedTriangle::Corner>& corners = mesh.triangles.corners();
     for (const std::uint32_t vertex : indexed.vertices) {
@@ -82,7 +84,7 @@ void write_obj(const std::filesystem::path& path, const EmittedMesh& mesh, const
     for (std::size_t g = 0; g + 1 < grouped.begins.size(); ++g) {
         if (grouped.begins[g] == grouped.begins[g + 1])
             continue;
-        const char* const test = test_names[g / generations];
+        const std::string_view test = test_names[g / generations];
         const std::size_t generation = g % generations;
         put(FMT_COMPILE("g {}_g{}\nusemtl {}_g{}\n"), test, generation, test, generation);
         for (std::size_t i = grouped.begins[g]; i < grouped.begins[g + 1]; ++i) {

@@ -11,8 +11,8 @@ namespace tessera {
 /// a/a/a b/b/b c/c/c`.
 ///
 /// Generation and deciding test of a triangle are its group and material, `g normal_g3` and `usemtl
-/// normal_g3`: the test that split its parent (base: none did, it is a base triangle; normal; summed_height;
-/// both; highlight: the Highlight Test alone), and the generation of its youngest vertex. Each group comes
+/// normal_g3`: the test that split its parent (base: none did, it is a base triangle; normal; summed_height or its
+/// replacement; both; highlight: the Highlight Test alone), and the generation of its youngest vertex. Each group comes
 /// once, by test and generation; within it, triangles are in the mesh's order (call EmittedMesh::sort()
 /// before). No material file is named: readers create plain materials of these names. Vertices by first use
 /// in the mesh, shared as in indexed_mesh.h. The same mesh gives the same bytes on every compiler and machine.

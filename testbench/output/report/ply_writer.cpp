@@ -49,6 +49,7 @@ class Record {
 void write_ply(const std::filesystem::path& path, const EmittedMesh& mesh, const MeshUnits& units) {
     const IndexedMesh indexed = IndexedMesh::from(mesh);
     const bool highlight = mesh.has_highlight_splits();
+    const char* const height_test = kind_of(units.formats.height_test).title;
     AtomicFile file(path);
     file.write(
         fmt::format("ply\n"
@@ -58,11 +59,11 @@ void write_ply(const std::filesystem::path& path, const EmittedMesh& mesh, const
                     "comment s t: texture coordinates, 0..1 spans the map, t = 0 is its bottom row\n"
                     "comment generation: of the triangle's youngest vertex; 0 is a base triangle's\n"
                     "comment split_by: tests that split the parent: 0 none (a base triangle), 1 Normal Test, "
-                    "2 Summed Height Test, 3 both{}\n"
-                    "comment stopped_by: tests that stopped a split requested by the Normal{} Summed Height{} Test: "
+                    "2 {0}, 3 both{3}\n"
+                    "comment stopped_by: tests that stopped a split requested by the Normal{1} {0}{2}: "
                     "sum of 4 View Test, 8 Tex Coord Test, 16 Generation Test\n"
                     "comment base: the base triangle it descends from\n"
-                    "element vertex {}\n"
+                    "element vertex {4}\n"
                     "property double x\n"
                     "property double y\n"
                     "property double z\n"
@@ -71,15 +72,16 @@ void write_ply(const std::filesystem::path& path, const EmittedMesh& mesh, const
                     "property float nz\n"
                     "property double s\n"
                     "property double t\n"
-                    "element face {}\n"
+                    "element face {5}\n"
                     "property list uchar int vertex_indices\n"
                     "property uchar generation\n"
                     "property uchar split_by\n"
                     "property uchar stopped_by\n"
                     "property int base\n"
                     "end_header\n",
-                    highlight ? "; 32 is added where the Highlight Test was true" : "", highlight ? "," : " or",
-                    highlight ? " or Highlight" : "", indexed.vertices.size(), indexed.triangles.size()));
+                    height_test, highlight ? "," : " or", highlight ? " or Highlight Test" : "",
+                    highlight ? "; 32 is added where the Highlight Test was true" : "", indexed.vertices.size(),
+                    indexed.triangles.size()));
     Record record(file);
     for (const std::uint32_t vertex : indexed.vertices) {
         const EmittedTriangle::Corner& corner = mesh.triangles.corners()[vertex];

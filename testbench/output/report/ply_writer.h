@@ -13,7 +13,7 @@ namespace tessera {
 ///             double s t           texture coordinates, 0..1 spans the map (s, t: the names readers know)
 ///     face:   list uchar int vertex_indices
 ///             uchar generation     of its youngest vertex
-///             uchar split_by       which tests split its parent: 1 Normal, 2 Summed Height, 3 both; 32 is added
+///             uchar split_by       which tests split its parent: 1 Normal, 2 height test, 3 both; 32 is added
 ///                                  where the Highlight Test was true; 0: a base triangle
 ///             uchar stopped_by     sum of 4 View, 8 Tex Coord, 16 Generation: what kept an edge of it whole
 ///             int base             its base triangle

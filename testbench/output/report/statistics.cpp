@@ -105,7 +105,7 @@ void host_figures(std::vector<Figure>& all, const MachineSetup& setup, std::uint
     c.add("base_triangles_dropped", setup.base_dropped, "triangle", "collapsed when rounded to the formats");
     c.add("mesh_bytes", base, "byte", "base mesh: three vertices of P, N, T, t per triangle; every frame");
     c.add("table_bytes", tables, "byte",
-          "displacement map, normal map, Summed Height Table; once, the normal map again when the scale "
+          "displacement map, normal map, the height test's table; once, the normal map again when the scale "
           "changes");
     c.add("register_bytes", traffic.registers, "byte", "registers, as 32 bit words; once, later those that change");
     c.add("tessellated_vertices", vertices, "vertex", "distinct vertices of the finished mesh, by t, P' and N'");
@@ -219,10 +219,11 @@ std::vector<Figure> collect_statistics(const MachineSetup& setup, const Simulati
     FigureGroup decide(all, "pass_or_tessellate");
     decide.add("passes", counts.passes, "triangle", "triangles that went through the tests");
     decide.add("normal_passes", counts.normal_passes, "triangle", "recirculated once more for screen normals");
+    const char* const height_test = kind_of(setup.registers.formats.height_test).title;
     decide.add("split_by_normal", decided.split_by_normal, "edge",
-               "split by the Normal Test, while the Summed Height Test was false");
+               fmt::format("split by the Normal Test, while the {} was false", height_test));
     decide.add("split_by_summed_height", decided.split_by_summed_height, "edge",
-               "split by the Summed Height Test or its replacement, while the Normal Test was false");
+               fmt::format("split by the {}, while the Normal Test was false", height_test));
     decide.add("split_by_both", decided.split_by_both, "edge", "split by both");
     if (setup.registers.tests.highlight_test) {
         decide.add("split_by_highlight", decided.split_by_highlight, "edge",

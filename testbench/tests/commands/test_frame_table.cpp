@@ -58,12 +58,27 @@ TEST_CASE("frames.txt: the bytes sent are listed by kind and beside the tessella
     rows[2].sent.registers = 7;
     rows[2].tessellated_bytes = 0;
     CHECK(frames_traffic(rows) ==
-          "  sent for the first frame  54,321 bytes: base mesh 1, displacement map 20, normal map 300, Summed "
-          "Height Table 4,000, registers 50,000\n"
+          "  sent for the first frame  54,321 bytes: base mesh 1, displacement map 20, normal map 300, height "
+          "test's table 4,000, registers 50,000\n"
           "  sent for a later frame    309 bytes: base mesh 1, normal map 300, registers 8 (the largest, "
           "frame_001)\n"
           "  for all frames            54,938 bytes; the tessellated meshes, indexed, would be 108,630: the "
           "host sends 0.51 times that size\n");
+}
+
+TEST_CASE("frames.txt: of the later frames the one for which most is sent is named, the first never") {
+    std::vector<FrameRow> rows(5, two_rows()[0]);
+    for (std::size_t k = 0; k < rows.size(); ++k)
+        rows[k].name = "frame_00" + std::to_string(k);
+    for (std::size_t most = 1; most < rows.size(); ++most) {
+        for (std::size_t k = 1; k < rows.size(); ++k)
+            rows[k].sent = {0, 0, 0, 0, k == most ? 8U : 7U - k};
+        INFO(most);
+        CHECK_THAT(frames_traffic(rows),
+                   Catch::Contains("  sent for a later frame    8 bytes: base mesh 0, registers 8 "
+                                   "(the largest, " +
+                                   rows[most].name + ")\n"));
+    }
 }
 
 TEST_CASE("frames: the counts of a frame are read from its own figures") {

@@ -126,6 +126,15 @@ TEST_CASE("map: the rectangles of the Summed Height Test are those worked out by
     CHECK(same(clamped.rectangle_size({0, 0}, {320, 160}), 0, 0, 32, 16));
 
     const Rectangle size{0, 0, 4, 3};
+    INFO("each axis follows its own address mode");
+    const Map clamped_u(32, 16, AddressMode::clamp, AddressMode::repeat, constant_codes(32, 16, 0));
+    const Map clamped_v(32, 16, AddressMode::repeat, AddressMode::clamp, constant_codes(32, 16, 0));
+    for (const Map* map : {&clamped_u, &clamped_v})
+        CHECK(same(map->rectangle_size({0, 0}, {320, 160}), 0, 0, 32, 16));
+    CHECK(same(clamped_u.rectangle_about({0.5, 0.5}, size), 0, 15, 4, 3));
+    CHECK(same(clamped_v.rectangle_about({0.5, 0.5}, size), 30, 0, 4, 3));
+    CHECK(same(clamped_u.rectangle_about({32, 16}, size), 28, 15, 4, 3));
+    CHECK(same(clamped_v.rectangle_about({32, 16}, size), 30, 13, 4, 3));
     CHECK(same(clamped.rectangle_about({10.7, 8.2}, size), 8, 7, 4, 3));
     CHECK(same(repeated.rectangle_about({10.7, 8.2}, size), 8, 7, 4, 3));
     CHECK(same(clamped.rectangle_about({0.5, 0.5}, size), 0, 0, 4, 3));  // shifted inside, not clipped

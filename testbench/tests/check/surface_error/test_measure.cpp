@@ -408,3 +408,58 @@ TEST_CASE("a mesh of another base mesh is refused") {
     mesh.triangles[1].base = 2;
     CHECK_THROWS_WITH(measure_error(base, map, heights(1), mesh), Catch::Contains("base triangle 2"));
 }
+
+// A lattice over 50 texels, 64 long; its mesh rises beyond the map only.
+TEST_CASE("what lies beyond a map that clamps does not count") {
+    const DisplacementOf clamped = heights(1);
+    const BaseMesh base = make_lattice({50, 50}, {false, false}, 32, 50, 50);
+    const HeightMap map = make_map(50, 50, [](int, int) { return 0; });
+    const bool along_u = GENERATE(true, false);
+    RecordedMesh mesh = emitted(make_plane(64, 64, 64, 64), [&](const BaseVertex& v) {
+        const glm::dvec3 p = v.position + glm::dvec3(7.5, 7.5, 0);  // from -24.5, the first texel's centre
+        return glm::dvec3(p.x, p.y, (along_u ? p.x : p.y) > 26 ? 3 : 0.5);
+    });
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v)
+        mesh.textures[v] = (glm::dvec2(mesh.positions[v]) + 25.0) / 50.0;
+    for (RecordedMesh::Triangle& t : mesh.triangles)
+        t.base = 0;
+    const MeshError error = measure_error(base, map, clamped, mesh);
+    require_constant(error.interpolated.reference_to_mesh, 0.5);
+    require_constant(error.interpolated.mesh_to_reference, 0.5);
+    require_constant(error.nearest_texel.reference_to_mesh, 0.5);
+    require_constant(error.nearest_texel.mesh_to_reference, 0.5);
+    const float beyond = std::max_element(error.interpolated.triangles.begin(), error.interpolated.triangles.end(),
+                                          [](const TriangleError& a, const TriangleError& b) { return a.max < b.max; })
+                             ->max;
+    CHECK(beyond == 3);  // pictures show it
+    // Points of the reference: 8 triangles of 32 texels, a quarter of a texel apart; on the map 0.5 to 50 of each axis.
+    CHECK(error.beyond_map + error.interpolated.reference_to_mesh.samples == 8u * 129 * 130 / 2);
+    CHECK(error.interpolated.reference_to_mesh.samples > 199u * 199);  // 0.5, 0.75, ... 50
+    CHECK(error.interpolated.reference_to_mesh.samples < 199u * 199 + 8 * 129);
+
+    INFO("where the map repeats it is everywhere");
+    DisplacementOf repeating = clamped;
+    (along_u ? repeating.address_u : repeating.address_v) = Addressing::repeat;
+    CHECK(measure_error(base, map, repeating, mesh).interpolated.mesh_to_reference.max == 3);
+}
+
+// A step of the map in the middle of four texels, under a flat mesh: distances are the heights.
+TEST_CASE("a step's error with either sampling method") {
+    const BaseMesh base = make_plane(1, 1, 4, 4);
+    const HeightMap map = make_map(4, 4, [](int x, int) { return x < 2 ? 0 : 1; });
+    const RecordedMesh mesh = emitted(base);
+    const MeshError error = measure_error(base, map, heights(0.125), mesh);
+    // 16 quarters of a texel along u, so 17 columns of samples, the outer ones with half the weight.
+    CHECK(error.interpolated.reference_to_mesh.samples == 2u * 17 * 18 / 2);
+    CHECK(error.reference_density == 4);
+    CHECK(error.nearest_texel.reference_to_mesh.max == Approx(0.125));
+    CHECK(error.nearest_texel.reference_to_mesh.rms == Approx(0.125 * std::sqrt(8.5 / 16)));
+    CHECK(error.interpolated.reference_to_mesh.max == Approx(0.125));
+    // 1/4, 1/2, 3/4 in columns 7, 8, 9; then 1 in six and a half
+    CHECK(error.interpolated.reference_to_mesh.rms == Approx(0.125 * std::sqrt((0.0625 + 0.25 + 0.5625 + 6.5) / 16)));
+    // An edge of 5.7 texels in space is cut into six, a triangle into 36; its centroid is a corner of a part.
+    CHECK(error.mesh_density == 1);
+    CHECK(error.interpolated.mesh_to_reference.samples == 2u * 36 + 2 + 4);
+    CHECK(error.nearest_texel.mesh_to_reference.samples == 2u * 36 + 2 + 4);
+    CHECK(error.texel == 1);
+}

@@ -155,6 +155,44 @@ TEST_CASE("bake: texels without a triangle take the value of the nearest covered
     CHECK(at(repeated, 2, 0) == at(repeated, 1, 0));
 }
 
+TEST_CASE(
+    "bake: a mesh across the map's borders gives its values to the texels that the address mode selects, on either axis") {
+    // A plane z = 0 whose texture coordinates are its positions, from -1/4 to 3/4 and from 5/4 to 9/4.
+    const std::string text =
+        "v -0.25 1.25 0\nv 0.75 1.25 0\nv 0.75 2.25 0\nv -0.25 2.25 0\n"
+        "vt -0.25 1.25\nvt 0.75 1.25\nvt 0.75 2.25\nvt -0.25 2.25\nvn 0 0 1\nf 1/1/1 2/2/1 3/3/1 4/4/1\n";
+    const BaseMesh mesh = parse_obj(text, "t.obj");
+    QuadricSurface ramp;  // z = x + 10 y
+    ramp.quadric = {{0, 0, 0}, glm::dmat3(0), {1, 10, -1}, 0};
+    const auto [width, height] = GENERATE(table<int, int>({{4, 4}, {8, 4}, {4, 12}}));
+    Job::Map both;
+    both.address_u = both.address_v = Addressing::repeat;
+    const BakedMap map = bake_over_mesh(ramp, mesh, both, width, height);
+    CHECK(map.uncovered == 0);
+    CHECK(map.overlaps == 0);
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            INFO(x << ' ' << y);
+            const double u = (x + 0.5) / width, v = (y + 0.5) / height;
+            CHECK(at(map, x, y) == Approx((u < 0.75 ? u : u - 1) + 10 * (v < 0.25 ? v + 2 : v + 1)));
+        }
+}
+
+TEST_CASE("bake: values spread across the borders that repeat, on either axis") {
+    const BaseMesh mesh = parse_obj(
+        "v 0 0 0\nv 0.5 0 0\nv 0 0.5 0\nvt 0 0\nvt 0.5 0\nvt 0 0.5\nvn 0 0 1\nf 1/1/1 2/2/1 3/3/1\n", "t.obj");
+    QuadricSurface ramp;
+    ramp.quadric = {{0, 0, 0}, glm::dmat3(0), {1, 10, -1}, 0};
+    for (const bool along_u : {true, false}) {
+        Job::Map addressing;
+        (along_u ? addressing.address_u : addressing.address_v) = Addressing::repeat;
+        const BakedMap map = bake_over_mesh(ramp, mesh, addressing, 4, 4);
+        // Texel 3 is beside texel 0 if the axis repeats, else two beside texel 1.
+        CHECK(at(map, 3, 0) == at(map, along_u ? 0 : 1, 0));
+        CHECK(at(map, 0, 3) == at(map, 0, along_u ? 1 : 0));
+    }
+}
+
 TEST_CASE("bake: of overlapping triangles the first is used, and the overlap is reported") {
     // Two sheets with the same texture coordinates, the second higher.
     const std::string sheets =

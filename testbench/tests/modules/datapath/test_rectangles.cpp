@@ -136,9 +136,15 @@ TEST_CASE("rectangles: size by division, at least one texel, at most the map, co
             size.height != expected_side(a.v, b.v, 4, map.height, formats) || other.width != size.width ||
             other.height != size.height)
             FAIL(a.u << ", " << a.v << " to " << b.u << ", " << b.v << " gives " << size.width << " x " << size.height);
-        for (const AddressMode mode : both_modes) {
-            map.address_u = mode;
-            map.address_v = mode;
+        for (const auto& [u, v] : {std::pair{AddressMode::clamp, AddressMode::clamp},
+                                   {AddressMode::clamp, AddressMode::repeat},
+                                   {AddressMode::repeat, AddressMode::clamp},
+                                   {AddressMode::repeat, AddressMode::repeat}}) {
+            map.address_u = u;
+            map.address_v = v;
+            const RectangleSize here = rectangle_size(a, b, map, formats);
+            if (here.width != size.width || here.height != size.height)
+                FAIL("the size depends on the address mode");
             for (const TexCoord& t : {a, b, midpoint(a, b)})
                 if (!placed_right(t, centred_rectangle(t, size, map, formats), size, map, formats))
                     FAIL("rectangle of " << size.width << " x " << size.height << " about " << t.u << ", " << t.v
@@ -257,6 +263,35 @@ TEST_CASE("rectangles: a constant map never splits, long edges of odd-sized maps
                     }
                 }
             }
+        }
+    }
+}
+
+// Codes are squares along one axis. An edge over the whole map has rectangles of four texels along that axis: about its
+// ends texels 0 to 3 and the last four (clamp), or the last two and the first two (repeat); in the middle four texels.
+TEST_CASE("rectangles: with a threshold per area, each axis has its own address mode") {
+    for (const AddressMode u : both_modes) {
+        for (const AddressMode v : both_modes) {
+            const auto splits = [&, u = u, v = v](bool along_u, std::uint64_t threshold) {
+                const std::uint32_t width = along_u ? 8 : 3, height = along_u ? 3 : 16;
+                std::vector<std::uint32_t> codes;
+                for (std::uint32_t y = 0; y < height; ++y)
+                    for (std::uint32_t x = 0; x < width; ++x)
+                        codes.push_back(along_u ? x * x : y * y);
+                Machine machine = machine_of(width, height, u, v, 32, codes);
+                machine.registers.tests.summed_height_unit = SummedHeightUnit::area;
+                machine.registers.tests.summed_height_threshold = threshold;
+                return machine.summed_height({0, 0}, {(along_u ? 8u : 3u) << 12, (along_u ? 3u : 16u) << 12});
+            };
+            INFO((u == AddressMode::repeat) << (v == AddressMode::repeat));
+            // 2 * 54 - 14 - 126, or - 2 * 86, of 4 texels
+            const std::uint64_t in_u = (u == AddressMode::clamp ? 32 : 64) / 4;
+            CHECK(splits(true, in_u - 1));
+            CHECK_FALSE(splits(true, in_u));
+            // 2 * 230 - 14 - 734, or - 2 * 422
+            const std::uint64_t in_v = (v == AddressMode::clamp ? 288 : 384) / 4;
+            CHECK(splits(false, in_v - 1));
+            CHECK_FALSE(splits(false, in_v));
         }
     }
 }

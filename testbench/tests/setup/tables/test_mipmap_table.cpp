@@ -38,3 +38,30 @@ TEST_CASE("Mipmaps hold the mean, or the maximum, of each block's texels") {
         }
     }
 }
+
+// Worked out by hand: means round to the nearest, halves up, of the texels alone, not of rounded means.
+TEST_CASE("Mipmaps of small maps, entry by entry") {
+    const auto table = [](std::uint32_t width, std::uint32_t height, std::vector<std::uint16_t> codes,
+                          MipmapFilter filter) {
+        QuantisedMap map;
+        map.geometry = {width, height, AddressMode::clamp, AddressMode::clamp};
+        map.codes = std::move(codes);
+        std::vector<std::uint16_t> entries = make_mipmap_table(map, filter).entries;
+        entries.erase(entries.begin(), entries.begin() + width * height);  // level 0, the map
+        return entries;
+    };
+    using Entries = std::vector<std::uint16_t>;
+    // Sums 2, 1, 3, 4 of four: 0.5 up to 1, 0.25, 0.75, 1. The whole: 10/16, where the mean of rounded means is 0.75.
+    const Entries square = {0, 1, 0, 0, 1, 0, 1, 0, 1, 1, 1, 1, 1, 0, 1, 1};
+    CHECK(table(4, 4, square, MipmapFilter::mean) == Entries{1, 0, 1, 1, 1});
+    CHECK(table(4, 4, square, MipmapFilter::maximum) == Entries{1, 1, 1, 1, 1});
+    // Sums 1, 1, 1, 2: 5/16 is 0, of rounded means 0.25.
+    CHECK(table(4, 4, {0, 1, 0, 0, 0, 0, 1, 0, 1, 0, 1, 1, 0, 0, 0, 0}, MipmapFilter::mean) == Entries{0, 0, 0, 1, 0});
+    // 3 x 3: blocks of 4, 2, 2 and 1 texels: 12/4; 7/2 = 3.5; 9/2 = 4.5; 9. The whole 37/9 = 4.1.
+    CHECK(table(3, 3, {1, 2, 3, 4, 5, 4, 4, 5, 9}, MipmapFilter::mean) == Entries{3, 4, 5, 9, 4});
+    CHECK(table(3, 3, {1, 2, 3, 4, 5, 4, 4, 5, 9}, MipmapFilter::maximum) == Entries{5, 4, 5, 9, 9});
+    // 5 x 1: 65535 + 65534 over 2 is 65534.5; then three levels of halves.
+    CHECK(table(5, 1, {65535, 65534, 0, 1, 2}, MipmapFilter::mean) == Entries{65535, 1, 2, 32768, 2, 26214});
+    CHECK(table(1, 3, {7, 8, 1}, MipmapFilter::mean) == Entries{8, 1, 5});  // 16/3 = 5.33
+    CHECK(table(1, 1, {7}, MipmapFilter::mean).empty());
+}
