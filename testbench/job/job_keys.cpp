@@ -205,8 +205,8 @@ std::vector<KeyTable> declare_keys() {
         key.add("source", &Mesh::source, "A built-in shape; file: the mesh in mesh.file (the default if mesh.file is given); patches: the Bezier patches in mesh.file; run: the mesh of an earlier run; lattice: a plane whose vertices lie at centres of texels, mesh.spacing apart. A lattice extends beyond the map if mesh.spacing does not divide the map's size");
         key.add("file", &Mesh::file, KeyKind::file, "With mesh.source = \"file\" an OBJ file; with \"patches\" a file of bicubic Bezier patches in the format of Newell's teapot; with \"run\" the folder of an earlier run");
         key.add("fingerprint", &Mesh::fingerprint, KeyKind::text, "64-bit FNV-1a hash of the file (of a run's mesh.ply), 16 hexadecimal digits; a file with another hash is refused. A run writes it into its job.toml; empty: any file");
-        key.add("columns", &Mesh::columns, "quads", between(0, 2048), "Quads along u; 0: 3 for the plane, 4 for each patch, 32 for cylinder and sphere, which need 3 or more");
-        key.add("rows", &Mesh::rows, "quads", between(0, 2048), "Quads along v; 0: 3 for the plane, 4 for each patch, 32 for cylinder and sphere; a sphere needs 2 or more");
+        key.add("columns", &Mesh::columns, "quads", between(0, 2048), "Quads along u of a plane, cylinder or sphere, or of each patch; 0: 3 for the plane, 4 for each patch, 32 for cylinder and sphere, which need 3 or more");
+        key.add("rows", &Mesh::rows, "quads", between(0, 2048), "Quads along v, likewise; 0: 3 for the plane, 4 for each patch, 32 for cylinder and sphere; a sphere needs 2 or more");
         key.add("spacing", &Mesh::spacing, "texels", between(1, 2048), "Distance between the vertices of a lattice: a power of two");
         key.add("width", &Mesh::width, "model units", length_range, "Size of the plane along x; with a lattice, of the map");
         key.add("depth", &Mesh::depth, "model units", length_range, "Size of the plane along y; with a lattice, of the map");
@@ -266,7 +266,7 @@ std::vector<KeyTable> declare_keys() {
         key.add("view_threshold", &Tests::view_threshold, "pixels", between(0, 1e6), "View Test: only an edge that is longer on the screen (Manhattan length) may be split");
         key.add("tex_coord", &Tests::tex_coord, "Tex Coord Test: stops at the map's resolution; off: allows every split");
         key.add("generation", &Tests::generation, "Generation Test; off: allows every split, so that a run may never end");
-        key.add("generation_limit", &Tests::generation_limit, "generations", between(0, 15), "Generation Test: largest generation of a new vertex");
+        key.add("generation_limit", &Tests::generation_limit, "generations", between(0, 15), "Generation Test: largest generation of a new vertex, at most 2^formats.generation_bits - 1");
         key.add("highlight", &Tests::highlight, "Highlight Test, for per-vertex lighting: smaller triangles in the Phong highlight of hardware.light; off: the design has no Highlight Test");
         key.add("highlight_angle", &Tests::highlight_angle, "degrees", between(0, 90), "Highlight Test: a normal lies in the highlight if it is within this angle of the half vector between the directions to the light and to the viewer (camera.eye - camera.target)");
         key.add("highlight_normal_threshold", &Tests::highlight_normal_threshold, "unit normal component", between(0, 2), "Highlight Test: an edge with a normal in the highlight requests a split if a component of two of its normals differs by more");

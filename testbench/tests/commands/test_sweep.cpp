@@ -148,7 +148,9 @@ TEST_CASE("sweep: a result is named by the content of every file that it depends
               "mode = \"functional\"\n[mesh]\nfile = \"data:mesh.obj\"\n[map]\nfile = \"map.pgm\"\n");
     write_all(root / "three.toml",
               "mode = \"functional\"\n[mesh]\nsource = \"run\"\nfile = \"earlier\"\n[map]\nsource = \"constant\"\n");
-    REQUIRE(checkout.run("scripts/run one.toml --set output.folder=earlier").exit_code == 0);
+    REQUIRE(
+        checkout.run("build/release/testbench/commands/tessera run one.toml --set output.folder=earlier").exit_code ==
+        0);
     const std::string three_jobs =
         "scenes = [\"one.toml\", \"two.toml\", \"three.toml\"]\nfigures = [\"mesh.triangles\"]\n"
         "[[axis]]\nkey = \"check.work\"\nvalues = [true]\n";
@@ -205,7 +207,7 @@ TEST_CASE("sweep: a run during which an input changes has no result") {
     write_all(
         program,
         "#!/bin/sh\ncase \"$*\" in *--dump-config*) ;; *output.folder*) touch -d 2001-01-01 \"$CHANGED\" ;; esac\nexec \"" +
-            tessera_program().string() + "\" \"$@\"\n");
+            tessera_program() + "\" \"$@\"\n");
     fs::permissions(program, fs::perms::owner_all);
     write_all(checkout.root() / "map.pgm", "P2\n2 2\n255\n0 90 0 0\n");
     write_all(checkout.root() / "one.toml", "mode = \"functional\"\n[map]\nfile = \"map.pgm\"\n");

@@ -138,22 +138,8 @@ TEST_CASE("statistics: two triangles split once have the figures worked out by h
                            {"tessellated_mesh_bytes_unindexed", bytes(24 * widths.finished_vertex)},
                            {"bandwidth_saving", whole / base},
                            {"frames_to_pay_for_tables", tables / (whole - base)}});
-    // A rectangle of half the map's width and a quarter of its height, of the highest codes: 4 * 2 * 65535 < 2^19.
+    f.require("formats", {{"queue_entry", widths.triangle}, {"lighting_vertex", widths.emitted_vertex}});
     const datapath::Formats& formats = simulation.setup.registers.formats;
-    f.require_all("formats", {{"position_bits", 32},
-                              {"position_fraction", 16},
-                              {"model_scale", simulation.setup.model_scale.scale},
-                              {"normal_bits", 16},
-                              {"texture_bits", 12 + 12 + 1},
-                              {"tex_coord_fraction", 0},
-                              {"displacement_bits", 16},
-                              {"summed_height_bits", 32},
-                              {"largest_rectangle_sum", 4 * 2 * 65535},
-                              {"summed_height_bits_needed", 19},
-                              {"view_distance_fraction", formats.view_distance.fraction},
-                              {"screen_bits", 24},
-                              {"queue_entry", widths.triangle},
-                              {"lighting_vertex", widths.emitted_vertex}});
     f.require("streams",
               {{"tag", 6},
                {"triangle", widths.triangle},
@@ -294,52 +280,6 @@ TEST_CASE("statistics: one triangle's cycles in each unit are those worked out b
                                         {"spilled", 0},
                                         {"refilled", 0},
                                         {"spill_bytes", 0}});
-}
-
-TEST_CASE("statistics: the area's totals are the sums of its parts, and the ports those of the tables") {
-    Job job = full_split_job(1, 1);
-    job.map.width = job.map.height = 8;
-    const auto design = GENERATE(as<const char*>(), "paper", "caches", "rank");
-    INFO(design);
-    if (design == std::string("caches"))
-        job.timing.normal_map.cache_bytes = 1024;
-    if (design == std::string("rank")) {
-        job.hardware.height_test = HeightTest::rank;
-        job.mesh.source = MeshSource::lattice;
-        job.mesh.spacing = 8;
-    }
-    TimedRun simulation(setup_of(job));
-    const Figures f = figures_of(simulation);
-    for (const std::string kind : {"_multipliers", "_register_bits", "_memory_bits", "_ports"}) {
-        INFO(kind);
-        double sum = 0;
-        for (const auto& [name, value] : f.numbers)
-            if (name.rfind("area.", 0) == 0 && name != "area.total" + kind && name.size() > kind.size() &&
-                name.compare(name.size() - kind.size(), kind.size(), kind) == 0)
-                sum += value;
-        CHECK(sum > 0);
-        CHECK(f.numbers.at("area.total" + kind) == sum);
-    }
-}
-
-TEST_CASE("statistics: a cache's rates and bytes follow from its counts") {
-    Job job = full_split_job(1, 1);
-    job.map.width = job.map.height = 8;
-    job.timing.normal_map.cache_bytes = 256;
-    job.timing.normal_map.line_bytes = 64;
-    TimedRun simulation(setup_of(job));
-    const Figures f = figures_of(simulation);
-    const auto figure = [&](const char* name) { return f.numbers.at(std::string("normal_map.") + name); };
-    // 36 reads, as without a cache; a line holds ten entries of six bytes, the map seven lines
-    CHECK(figure("reads") == 36);
-    CHECK(figure("cache_hits") > 0);
-    CHECK(figure("cache_fills") > 0);
-    CHECK(figure("cache_fills") <= 7);
-    CHECK(figure("cache_hits") + figure("cache_fills") == figure("reads"));
-    CHECK(figure("cache_hit_rate") == Approx(100 * figure("cache_hits") / 36));
-    CHECK(figure("bytes_fetched") <= 60 * figure("cache_fills"));
-    CHECK(figure("bytes_fetched") > 60 * (figure("cache_fills") - 1));
-    CHECK(figure("bytes_fetched_per_triangle") == figure("bytes_fetched") / 8);
 }
 
 TEST_CASE("statistics: spilled records are read back whole") {
