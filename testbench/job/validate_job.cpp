@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -16,6 +17,13 @@
 namespace tessera {
 
 namespace {
+
+std::int64_t power_of_two_below(std::int64_t value) {
+    std::int64_t power = 1;
+    while (2 * power <= value)
+        power *= 2;
+    return power;
+}
 
 void check_ranges(const Job& job, Faults& faults) {
     for (const KeyTable& table : job_tables()) {
@@ -55,14 +63,15 @@ void check_mesh(const Job::Mesh& mesh, Faults& faults) {
     check_file("mesh", reads_file(mesh.source), mesh.file, name_of(mesh.source), faults);
     check_fingerprint("mesh", mesh.fingerprint, mesh.file, faults);
     faults.unless((mesh.spacing & (mesh.spacing - 1)) == 0,
-                  "`mesh.spacing` = {}: a lattice needs a power of two, so that midpoints are at texel centres",
-                  mesh.spacing);
+                  "`mesh.spacing` = {}: a lattice needs a power of two, so that midpoints are at texel centres: set "
+                  "mesh.spacing = {}",
+                  mesh.spacing, power_of_two_below(mesh.spacing));
     const bool round = mesh.source == MeshSource::cylinder || mesh.source == MeshSource::sphere;
     faults.unless(!round || mesh.columns == 0 || mesh.columns >= 3,
-                  "`mesh.columns` = {}, but a {} needs 3 or more to close: raise mesh.columns", mesh.columns,
+                  "`mesh.columns` = {}, but a {} needs 3 or more to close: set mesh.columns = 3 or more", mesh.columns,
                   name_of(mesh.source));
     faults.unless(mesh.source != MeshSource::sphere || mesh.rows != 1,
-                  "`mesh.rows` = {}, but a sphere needs 2 or more: raise mesh.rows", mesh.rows);
+                  "`mesh.rows` = {}, but a sphere needs 2 or more: set mesh.rows = 2 or more", mesh.rows);
 }
 
 void check_map(const Job& job, Faults& faults) {
@@ -75,8 +84,9 @@ void check_map(const Job& job, Faults& faults) {
         const std::int64_t most = std::int64_t{1} << job.formats.texture_integer;
         faults.unless(map.width <= most && map.height <= most,
                       "`map.width` = {} by `map.height` = {}, but `formats.texture_integer` = {} addresses at most {} "
-                      "texels a side: make the map smaller or texture_integer larger",
-                      map.width, map.height, job.formats.texture_integer, most);
+                      "texels a side: set formats.texture_integer = {}, or map.width and map.height to at most {}",
+                      map.width, map.height, job.formats.texture_integer, most,
+                      bits_for(std::max(map.width, map.height)), most);
     }
 }
 
@@ -87,12 +97,12 @@ void check_heights(const Job& job, Faults& faults) {
     faults.unless(
         job.hardware.displacement_filter == MapFilter::nearest,
         "`map.heights` = \"fitted\", but `hardware.displacement_filter` = \"{}\" interpolates between texels: set "
-        "it to \"nearest\"",
+        "hardware.displacement_filter = \"nearest\"",
         name_of(job.hardware.displacement_filter));
     faults.unless(
         !job.hardware.one_texel_from_map || job.hardware.height_test != HeightTest::summed_height,
         "`map.heights` = \"fitted\", but with `hardware.one_texel_from_map` = true the Summed Height Test uses "
-        "fitted heights instead of the map's: set it to false");
+        "fitted heights instead of the map's: set hardware.one_texel_from_map = false");
 }
 
 void check_light(const Job::Hardware& hardware, Faults& faults) {
@@ -103,35 +113,35 @@ void check_light(const Job::Hardware& hardware, Faults& faults) {
 void check_rank_view(const Job& job, Faults& faults) {
     if (job.tests.rank_view == RankView::none)
         return;
-    faults.unless(job.hardware.height_test == HeightTest::rank,
-                  "`tests.rank_view` = \"{}\", but `hardware.height_test` = \"{}\" has no ranks: set it to \"rank\"",
-                  name_of(job.tests.rank_view), name_of(job.hardware.height_test));
     faults.unless(
-        job.hardware.test_order == TestOrder::cheap_first,
-        "`tests.rank_view` = \"{}\" needs `hardware.test_order` = \"cheap_first\": the View Test computes the "
-        "distances that the Rank Test needs",
-        name_of(job.tests.rank_view));
+        job.hardware.height_test == HeightTest::rank,
+        "`tests.rank_view` = \"{}\", but `hardware.height_test` = \"{}\" has no ranks: set hardware.height_test = \"rank\"",
+        name_of(job.tests.rank_view), name_of(job.hardware.height_test));
+    faults.unless(job.hardware.test_order == TestOrder::cheap_first,
+                  "`tests.rank_view` = \"{}\": the View Test computes the distances that the Rank Test needs: set "
+                  "hardware.test_order = \"cheap_first\"",
+                  name_of(job.tests.rank_view));
 }
 
 void check_hardware(const Job::Hardware& hardware, Faults& faults) {
-    faults.unless(
-        hardware.triangulation != Triangulation::greatest_rank || hardware.height_test == HeightTest::rank,
-        "`hardware.triangulation` = \"greatest_rank\", but `hardware.height_test` = \"{}\" has no ranks: set it to "
-        "\"rank\"",
-        name_of(hardware.height_test));
+    faults.unless(hardware.triangulation != Triangulation::greatest_rank || hardware.height_test == HeightTest::rank,
+                  "`hardware.triangulation` = \"greatest_rank\", but `hardware.height_test` = \"{}\" has no ranks: set "
+                  "hardware.height_test = \"rank\"",
+                  name_of(hardware.height_test));
     faults.unless(hardware.tests_units != 2,
                   "`hardware.tests_units` = 2: a design has 1 Tessellation Tests unit, or 3, one for each edge");
     faults.unless(hardware.tests_units == 1 || hardware.work == Work::triangle,
                   "`hardware.tests_units` = {}, but `hardware.work` = \"family\" has one Tessellation Tests unit: set "
-                  "`hardware.edge_lanes` and `hardware.normal_tests` instead",
+                  "hardware.tests_units = 1; hardware.edge_lanes and hardware.normal_tests replace it",
                   hardware.tests_units);
     const bool lanes = hardware.work == Work::family && hardware.test_order == TestOrder::cheap_first;
     for (const auto& [key, value] :
          {std::pair{"edge_lanes", hardware.edge_lanes}, {"normal_tests", hardware.normal_tests}})
         faults.unless(
             value == 1 || lanes,
-            "`hardware.{}` = {} needs `hardware.work` = \"family\" and `hardware.test_order` = \"cheap_first\"", key,
-            value);
+            "`hardware.{}` = {}: other designs have one: set hardware.work = \"family\" and hardware.test_order = "
+            "\"cheap_first\"",
+            key, value);
 }
 
 void check_timing(const Timing& timing, Faults& faults) {
@@ -139,8 +149,9 @@ void check_timing(const Timing& timing, Faults& faults) {
     faults.unless(
         table.interleave == Interleave::entry || (table.banks & (table.banks - 1)) == 0,
         "`timing.summed_height_table_banks` = {}, but `timing.summed_height_table_interleave` = \"xor\" needs "
-        "a power of two: set it to 4, 8 or 16, or the interleave to \"entry\"",
-        table.banks);
+        "a power of two: set timing.summed_height_table_banks = {}, or timing.summed_height_table_interleave = "
+        "\"entry\"",
+        table.banks, power_of_two_below(table.banks));
 }
 
 void check_traces(const Job& job, Faults& faults) {
@@ -149,9 +160,10 @@ void check_traces(const Job& job, Faults& faults) {
     faults.unless(wanted == nullptr || job.mode == Mode::timed,
                   "`output.{}` = true, but only timed mode has cycles to trace: set mode = \"timed\"",
                   wanted == nullptr ? "" : wanted);
-    faults.unless(output.trace_from <= output.trace_to,
-                  "`output.trace_from` = {} comes after `output.trace_to` = {}: lower it, or raise trace_to",
-                  output.trace_from, output.trace_to);
+    faults.unless(
+        output.trace_from <= output.trace_to,
+        "`output.trace_from` = {} comes after `output.trace_to` = {}: set output.trace_from = {}, or output.trace_to = {}",
+        output.trace_from, output.trace_to, output.trace_to, output.trace_from);
 }
 
 }  // namespace

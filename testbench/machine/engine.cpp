@@ -48,7 +48,7 @@ void choose_engine(const Job& job, MachineSetup& setup) {
     const std::string value = toml_value(key.get(job));
     if (job.timing.engine == Engine::schedule)
         throw InputError(fmt::format(
-            "`timing.engine` = \"schedule\", but `{}` = {} has no schedule: set it to {}, or timing.engine = \"auto\"",
+            "`timing.engine` = \"schedule\", but `{0}` = {1} has no schedule: set {0} = {2}, or timing.engine = \"auto\"",
             name, value, toml_value(default_of(key))));
     setup.engine_reason = fmt::format("{} = {} has no schedule", name, value);
 }

@@ -11,6 +11,7 @@
 #include "testbench/common/error.h"
 #include "testbench/job/job_keys.h"
 #include "testbench/job/toml_text.h"
+#include "testbench/setup/check_settings.h"
 #include "testbench/setup/map_displacement.h"
 #include "testbench/setup/unit_vector.h"
 
@@ -224,6 +225,17 @@ class Resolver {
     }
 
     void check() const {
+        const Job::Camera& camera = result_.job.camera;
+        const bool same = is_found("camera.target") && !are_apart(camera.eye, camera.target);
+        if (same && is_found("camera.eye"))
+            throw InputError(
+                fmt::format("the camera's distance from the mesh is too small beside its distance from the origin: "
+                            "derived from a base mesh of {:.6g} model units{}",
+                            base_.largest(), place_and_remedy()));
+        if (same)
+            throw InputError(fmt::format(
+                "`camera.eye` = {} is the centre of the displaced model, as is camera.target: set camera.eye = \"auto\"",
+                toml_value(find_key("camera.eye")->get(result_.job))));
         for (const FoundValue& value : result_.found) {
             const Key& key = *find_key(value.key);
             if (const std::string fault = complaint(key, key.get(result_.job)); !fault.empty())
@@ -232,13 +244,29 @@ class Resolver {
         }
     }
 
-    /// Far from the origin, the position and not the size takes a value out of its range.
+    bool is_found(const std::string& key) const {
+        return std::any_of(result_.found.begin(), result_.found.end(),
+                           [&](const FoundValue& value) { return value.key == key; });
+    }
+
+    /// What takes a value out of its range: the mesh's place, the displacement, or the mesh's size.
     std::string place_and_remedy() const {
         const glm::dvec3 centre = base_.centre(), away = glm::abs(centre);
-        if (std::max({away.x, away.y, away.z}) <= base_.largest())
-            return "; scale the mesh";
-        return fmt::format(" around ({:.6g}, {:.6g}, {:.6g}); move the mesh to the origin", centre.x, centre.y,
-                           centre.z);
+        if (std::max({away.x, away.y, away.z}) > base_.largest())
+            return fmt::format(
+                " around ({0:.6g}, {1:.6g}, {2:.6g}); subtract ({0:.6g}, {1:.6g}, {2:.6g}) from each "
+                "vertex of the mesh",
+                centre.x, centre.y, centre.z);
+        double reach = 0;
+        for (const double height : heights_of_all_frames())
+            reach = std::max(reach, std::abs(height));
+        if (constexpr double usual = 1e6; reach > usual * base_.largest())
+            return fmt::format(
+                "; the displacement reaches {:.3g}: check the map's values, or divide "
+                "displacement.scale and displacement.bias by {:g}",
+                reach, std::pow(10.0, std::ceil(std::log10(reach / base_.largest()))));
+        return fmt::format("; multiply each coordinate of the mesh's vertices by {:g}",
+                           std::pow(10.0, -std::round(std::log10(base_.largest()))));
     }
 
     const BaseMesh& mesh_;

@@ -98,19 +98,19 @@ void Simulation::check_limits(const Pipeline& machine) const {
             fmt::format("timing.clock_period = {} ps: after cycle {} simulated time ends, at 2^64 - 1 ps; lower the "
                         "period, which changes only the figures in seconds, or the latencies under [timing]",
                         setup.design.timing.cycle_picoseconds, machine.clock.last_cycle()));
-    const bool fifo = setup.design.queue.order == TriangleOrder::fifo;
+    const char* const fewer =
+        setup.design.queue.order == TriangleOrder::fifo ? "; with hardware.queue_order = \"lifo\" far fewer wait" : "";
     if (machine.triangle_queue.overflowed())
         throw ResourceError(fmt::format(
-            "hardware.queue_capacity = {}: the Triangle Queue was full when a triangle arrived in cycle {}; raise the "
-            "capacity, or set {}hardware.queue_overflow = \"spill\"",
-            setup.design.queue.capacity, machine.clock.last_cycle(),
-            fifo ? "hardware.queue_order = \"lifo\" or " : ""));
+            "hardware.queue_capacity = {}: the Triangle Queue was full when a triangle arrived in cycle {}; set "
+            "hardware.queue_capacity = 0, without a limit, or hardware.queue_overflow = \"spill\"{}",
+            setup.design.queue.capacity, machine.clock.last_cycle(), fewer));
     if (machine.triangle_queue.off_chip_memory_full())
         throw ResourceError(fmt::format(
             "hardware.off_chip_triangles = {}: in cycle {} a full Triangle Queue (hardware.queue_capacity = "
-            "{}) had more to spill; raise either{}",
-            setup.design.queue.off_chip_triangles, machine.clock.last_cycle(), setup.design.queue.capacity,
-            fifo ? ", or set hardware.queue_order = \"lifo\", which needs far fewer" : ""));
+            "{}) had more to spill; set hardware.queue_capacity = 0, without a limit, or raise "
+            "hardware.off_chip_triangles{}",
+            setup.design.queue.off_chip_triangles, machine.clock.last_cycle(), setup.design.queue.capacity, fewer));
 }
 
 std::string Simulation::stuck() const {
@@ -152,7 +152,7 @@ std::string Simulation::stuck(const HostedMachine& machine, const MachineSetup& 
     if (!clock.stalled() && pipeline.triangle_queue.waiting() > 0 && setup.design.queue.capacity > 0 &&
         setup.design.queue.overflow == QueueOverflow::stall)
         text += fmt::format(
-            "  a full queue does not spill: raise hardware.queue_capacity = {}, or set "
+            "  a full queue (hardware.queue_capacity = {}) does not spill: set hardware.queue_capacity = 0, without a limit, or "
             "hardware.queue_overflow = \"spill\"\n",
             setup.design.queue.capacity);
     return text;

@@ -15,22 +15,50 @@ using datapath::Format;
 
 namespace {
 
-/// remedy: for messages about coordinates that do not fit.
-std::uint32_t to_texture(double coordinate, std::uint32_t size, bool clamp, const Format& format, const char* remedy,
-                         bool& clamped) {
+/// A lattice may extend beyond the map.
+bool clamps(const BaseMesh& mesh, datapath::AddressMode mode) {
+    return mode == datapath::AddressMode::clamp && !mesh.beyond_map;
+}
+
+std::uint32_t to_texture(double coordinate, std::uint32_t size, bool clamp, const Format& format, bool& clamped) {
     double texels = coordinate * size;
     if (clamp && (texels < 0 || texels > size)) {
         clamped = true;
         texels = std::clamp(texels, 0.0, static_cast<double>(size));
     }
     const double fixed = std::nearbyint(std::ldexp(texels, format.fraction));
-    // the border bit holds 2^integer itself and nothing beyond
-    if (fixed < 0 || fixed > std::ldexp(1.0, format.bits - 1))
-        throw InputError(fmt::format(
-            "texture coordinate {} is {} texels of a map of {}, beyond the 0..{} that the texture coordinate's format "
-            "holds: {}",
-            coordinate, texels, size, 1 << (format.bits - 1 - format.fraction), remedy));
     return static_cast<std::uint32_t>(fixed);
+}
+
+/// Throws InputError if a texture coordinate does not fit its format.
+void check_texture(const BaseMesh& mesh, const datapath::MapGeometry& map, const Format& format) {
+    double most = 0, coordinate = 0;  // in texels
+    std::uint32_t size = 0;
+    const auto look = [&](double value, std::uint32_t side, datapath::AddressMode mode) {
+        if (clamps(mesh, mode) || value * side <= most)
+            return;
+        most = value * side;
+        coordinate = value;
+        size = side;
+    };
+    for (const BaseVertex& vertex : mesh.vertices) {
+        look(vertex.texture.x, map.width, map.address_u);
+        look(vertex.texture.y, map.height, map.address_v);
+    }
+    // the border bit holds 2^integer itself and nothing beyond
+    const double limit = std::ldexp(1.0, format.bits - 1 - format.fraction);
+    if (std::nearbyint(std::ldexp(most, format.fraction)) <= std::ldexp(limit, format.fraction))
+        return;
+    const int integer = static_cast<int>(std::ceil(std::log2(most)));
+    throw InputError(fmt::format(
+        "texture coordinate {} is {} texels of a map of {}, beyond the 0..{} that the texture coordinate's format "
+        "holds: {}use a map of at most {} texels a side{}",
+        coordinate, most, size, limit,
+        integer > datapath::FormatLimits::texture_integer.most
+            ? ""
+            : fmt::format("set formats.texture_integer = {}, or ", integer),
+        static_cast<std::uint32_t>(size * limit / most),
+        mesh.beyond_map ? " or a smaller mesh.spacing" : ", or triangles that repeat it less often"));
 }
 
 /// Moves texture coordinates by whole periods as near to 0 as possible, so that they fit their format.
@@ -49,13 +77,7 @@ void round_base_triangles(const BaseMesh& original, const ModelScale& model_scal
     InputSaturations& saturated = scene.input_saturations;
     const BaseMesh mesh = with_low_texture(original, map, formats.texture);
     bool clamped_u = false, clamped_v = false;
-    const auto clamps = [&](datapath::AddressMode mode) {
-        return mode == datapath::AddressMode::clamp && !mesh.beyond_map;
-    };
-    const char* const remedy =
-        mesh.beyond_map
-            ? "choose a smaller mesh.spacing, a smaller map or a larger formats.texture_integer"
-            : "make each triangle repeat the map less often, or use a smaller map or a larger formats.texture_integer";
+    check_texture(mesh, map, formats.texture);
     std::vector<datapath::Vertex> vertices;
     vertices.reserve(mesh.vertices.size());
     for (const BaseVertex& base : mesh.vertices) {
@@ -69,8 +91,8 @@ void round_base_triangles(const BaseMesh& original, const ModelScale& model_scal
         vertex.handedness = base.handedness < 0 ? std::int8_t{-1} : std::int8_t{1};
         bool beyond_u = false, beyond_v = false;
         vertex.texture = {
-            to_texture(base.texture.x, map.width, clamps(map.address_u), formats.texture, remedy, beyond_u),
-            to_texture(base.texture.y, map.height, clamps(map.address_v), formats.texture, remedy, beyond_v)};
+            to_texture(base.texture.x, map.width, clamps(mesh, map.address_u), formats.texture, beyond_u),
+            to_texture(base.texture.y, map.height, clamps(mesh, map.address_v), formats.texture, beyond_v)};
         scene.texture_clamped += beyond_u || beyond_v ? 1 : 0;
         clamped_u = clamped_u || beyond_u;
         clamped_v = clamped_v || beyond_v;

@@ -28,6 +28,20 @@ std::string number(double value) {
     return text.find_first_not_of("-0123456789") == std::string::npos ? text + ".0" : text;
 }
 
+/// The axis that is most nearly perpendicular to a direction.
+glm::dvec3 across(const glm::dvec3& v) {
+    const glm::dvec3 size = glm::abs(v);
+    glm::dvec3 axis(0);
+    axis[size.z <= size.x && size.z <= size.y ? 2 : size.y <= size.x ? 1 : 0] = 1;
+    return axis;
+}
+
+/// A point across `up` from the eye, not farther from the origin than it or 1.
+glm::dvec3 ahead_of(const glm::dvec3& eye, const glm::dvec3& up) {
+    const glm::dvec3 axis = across(up), distance = axis * std::max(1.0, safe_length(eye));
+    return glm::dot(axis, eye) > 0 ? eye - distance : eye + distance;
+}
+
 std::string text_of(const glm::dvec3& v) {
     return fmt::format("[{}, {}, {}]", number(v[0]), number(v[1]), number(v[2]));
 }
@@ -36,9 +50,9 @@ void check_camera(const CameraSettings& camera, const FormatSettings& formats, F
     const bool known = !is_automatic(camera.eye) && !is_automatic(camera.target);
     const glm::dvec3 eye = vector(camera.eye), target = vector(camera.target), up = vector(camera.up);
     const glm::dvec3 view = target - eye;
-    const bool apart = !known || safe_length(view) > 1e-9 * std::max(safe_length(eye), safe_length(target));
-    faults.unless(apart, "`camera.eye` = {} and `camera.target` = {} are the same point: move one of them",
-                  text_of(eye), text_of(target));
+    const bool apart = !known || are_apart(camera.eye, camera.target);
+    faults.unless(apart, "`camera.eye` = {} and `camera.target` = {} are the same point: set camera.target = {}",
+                  text_of(eye), text_of(target), text_of(ahead_of(eye, up)));
     const bool upward = is_automatic(camera.up) || safe_length(up) > 0;
     faults.unless(upward, "`camera.up` = {} has no direction: set one, such as [0, 0, 1]", text_of(up));
     // Below a sine of 1e-6, rounding errors would determine the picture's roll.
@@ -48,50 +62,46 @@ void check_camera(const CameraSettings& camera, const FormatSettings& formats, F
     const bool parallel = known && !is_automatic(camera.up) && apart && upward &&
                           sine(brought_near_one(view), brought_near_one(up)) <= 1e-6;
     faults.unless(!parallel,
-                  "`camera.up` = {} is parallel to the view direction {} (camera.target - camera.eye): choose "
-                  "another direction",
-                  text_of(up), text_of(view));
+                  "`camera.up` = {} is parallel to the view direction {} (camera.target - camera.eye): set "
+                  "camera.up = {}",
+                  text_of(up), text_of(view), text_of(across(view)));
     const std::int64_t integer_bits = formats.screen_bits - formats.screen_fraction - 1;
-    if (integer_bits >= 0) {
-        const std::int64_t most = std::int64_t{1} << integer_bits;
-        faults.unless(camera.viewport_width <= most && camera.viewport_height <= most,
-                      "`camera.viewport_width` = {} by `camera.viewport_height` = {}, but `formats.screen_bits` = {} "
-                      "with "
-                      "`formats.screen_fraction` = {} reaches only {} pixels: make the viewport smaller, or the format "
-                      "wider",
-                      camera.viewport_width, camera.viewport_height, formats.screen_bits, formats.screen_fraction,
-                      most);
-    }
+    const std::int64_t most = integer_bits < 0 ? 0 : std::int64_t{1} << integer_bits;
+    const std::int64_t needed = bits_for(std::max(camera.viewport_width, camera.viewport_height)) + 1;
+    const std::int64_t fraction =
+        std::min<std::int64_t>(formats.screen_fraction, datapath::FormatLimits::screen_bits.most - needed);
+    faults.unless(camera.viewport_width <= most && camera.viewport_height <= most,
+                  "`camera.viewport_width` = {} by `camera.viewport_height` = {}, but `formats.screen_bits` = {} with "
+                  "`formats.screen_fraction` = {} reaches only {} pixels: set formats.screen_fraction = {} and "
+                  "formats.screen_bits = {}, or make the viewport smaller",
+                  camera.viewport_width, camera.viewport_height, formats.screen_bits, formats.screen_fraction, most,
+                  fraction, fraction + needed);
 }
 
 void check_formats(const FormatSettings& formats, const TestSettings& tests, Faults& faults) {
-    faults.unless(
-        formats.rank_bits > 0 || formats.bound_bits > 0,
-        "`formats.rank_bits` = 0 and `formats.bound_bits` = 0: a Rank Table has ranks, bounds or both: set one of "
-        "them to 8");
+    faults.unless(formats.rank_bits > 0 || formats.bound_bits > 0,
+                  "`formats.rank_bits` = 0 and `formats.bound_bits` = 0: a Rank Table has ranks, bounds or both: set "
+                  "formats.rank_bits = 8, or formats.bound_bits = 8");
     faults.unless(formats.position_fraction < formats.position_bits,
-                  "`formats.position_fraction` = {} must be less than `formats.position_bits` = {}: lower it, or raise "
-                  "position_bits",
-                  formats.position_fraction, formats.position_bits);
-    faults.unless(formats.screen_fraction < formats.screen_bits,
-                  "`formats.screen_fraction` = {} must be less than `formats.screen_bits` = {}: lower it, or raise "
-                  "screen_bits",
-                  formats.screen_fraction, formats.screen_bits);
+                  "`formats.position_fraction` = {} must be less than `formats.position_bits` = {}: set "
+                  "formats.position_fraction = {}, or formats.position_bits = {}",
+                  formats.position_fraction, formats.position_bits, formats.position_bits - 1,
+                  formats.position_fraction + 1);
     faults.unless(formats.normal_bits - formats.normal_fraction >= 2,
                   "`formats.normal_fraction` = {} leaves {} of `formats.normal_bits` = {} for sign and "
-                  "integer, and 1.0 "
-                  "needs 2: lower it, or raise normal_bits",
-                  formats.normal_fraction, formats.normal_bits - formats.normal_fraction, formats.normal_bits);
-    faults.unless(
-        formats.tex_coord_fraction <= formats.texture_fraction,
-        "`formats.tex_coord_fraction` = {} must be at most `formats.texture_fraction` = {}: lower it, or raise "
-        "texture_fraction",
-        formats.tex_coord_fraction, formats.texture_fraction);
+                  "integer, and 1.0 takes 2: set formats.normal_fraction = {}, or formats.normal_bits = {}",
+                  formats.normal_fraction, formats.normal_bits - formats.normal_fraction, formats.normal_bits,
+                  formats.normal_bits - 2, formats.normal_fraction + 2);
+    faults.unless(formats.tex_coord_fraction <= formats.texture_fraction,
+                  "`formats.tex_coord_fraction` = {1} must be at most `formats.texture_fraction` = {0}: set "
+                  "formats.tex_coord_fraction = {0}, or formats.texture_fraction = {1}",
+                  formats.texture_fraction, formats.tex_coord_fraction);
     const std::int64_t generations = std::int64_t{1} << formats.generation_bits;
     faults.unless(tests.generation_limit < generations,
-                  "`tests.generation_limit` = {}, but `formats.generation_bits` = {} counts to {}: lower the limit, or "
-                  "raise generation_bits",
-                  tests.generation_limit, formats.generation_bits, generations - 1);
+                  "`tests.generation_limit` = {}, but `formats.generation_bits` = {} counts to {}: set "
+                  "tests.generation_limit = {}, or formats.generation_bits = {}",
+                  tests.generation_limit, formats.generation_bits, generations - 1, generations - 1,
+                  bits_for(tests.generation_limit + 1));
 }
 
 /// Checks that a coordinate or direction is set and finite.
@@ -143,6 +153,18 @@ void check_ranges(const SceneSettings& settings, Faults& faults) {
 }
 
 }  // namespace
+
+bool are_apart(const std::array<double, 3>& a, const std::array<double, 3>& b) {
+    const glm::dvec3 first = vector(a), second = vector(b);
+    return safe_length(second - first) > 1e-9 * std::max(safe_length(first), safe_length(second));
+}
+
+int bits_for(std::int64_t values) {
+    int bits = 0;
+    while (std::int64_t{1} << bits < values)
+        ++bits;
+    return bits;
+}
 
 std::vector<std::string> setting_faults(const CameraSettings& camera, const FormatSettings& formats,
                                         const TestSettings& tests) {

@@ -1,4 +1,6 @@
 #pragma once
+#include <array>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -10,6 +12,12 @@ namespace tessera {
 /// fault, with values and remedy. Automatic values are skipped.
 std::vector<std::string> setting_faults(const CameraSettings& camera, const FormatSettings& formats,
                                         const TestSettings& tests);
+
+/// Whether two points of a camera give a direction.
+bool are_apart(const std::array<double, 3>& a, const std::array<double, 3>& b);
+
+/// The least number of bits that count to `values` - 1.
+int bits_for(std::int64_t values);
 
 /// Throws InputError unless every value is set, within its range, and possible.
 void check_settings(const SceneSettings& settings);

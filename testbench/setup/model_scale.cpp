@@ -34,14 +34,19 @@ ModelScale fit_model(const BaseMesh& mesh, const DisplacementRange& displacement
     // with fewer steps across the whole mesh, the surface would be mostly rounding error
     constexpr double fewest_steps = 16;
     const double steps = std::ldexp(std::max({half.x, half.y, half.z}) * result.scale, position.fraction);
-    if (steps < fewest_steps)
+    if (steps < fewest_steps) {
+        const int halvings = static_cast<int>(std::ceil(std::log2(fewest_steps / steps)));
+        const int bits = position.bits + halvings;
         throw InputError(fmt::format(
             "{}: the displacement, {:.3g} to {:.3g} model units, is so large compared with the mesh (half its size "
             "is {:.3g}) that the mesh spans {:.3g} steps of its position format (at least {} are needed): "
-            "lower displacement.scale or displacement.bias, check the map's values, or raise "
-            "formats.position_bits",
+            "check the map's values, divide displacement.scale and displacement.bias by {}{}",
             map, displacement.bias, displacement.bias + displacement.range, std::max({half.x, half.y, half.z}), steps,
-            fewest_steps));
+            fewest_steps, std::ldexp(1.0, halvings + 1),
+            bits > datapath::FormatLimits::position_bits.most
+                ? ""
+                : fmt::format(", or set formats.position_bits = {}", bits)));
+    }
     return result;
 }
 

@@ -35,8 +35,8 @@ int summed_height_bits(std::int64_t wanted, std::uint64_t largest_sum) {
         bits = holds(32) ? 32 : (holds(40) ? 40 : 48);
     if (!holds(bits))
         throw InputError(
-            fmt::format("formats.summed_height_bits = {}: this mesh's largest rectangle sums up to {}, which needs {} "
-                        "bits; set that number, or 0 to choose automatically",
+            fmt::format("formats.summed_height_bits = {}: this mesh's largest rectangle sums up to {}, beyond "
+                        "these bits: set formats.summed_height_bits = {}, or 0 to choose automatically",
                         bits, largest_sum, 64 - datapath::leading_zeros(largest_sum)));
     return bits;
 }

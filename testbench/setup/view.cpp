@@ -34,6 +34,26 @@ double corner_secant(const CameraSettings& camera) {
     return std::hypot(1.0, half_diagonal / focal_length(camera));
 }
 
+namespace {
+
+/// Throws InputError if Transform's sums cannot hold `offset`, which the eye adds to them, at this distance in world
+/// units. A position of fewer bits has larger LSBs: the model is scaled to its format.
+void check_eye(double offset, double distance, const ModelScale& model_scale, const Format& position) {
+    const double limit = std::ldexp(1.0, 61);
+    if (offset <= limit)
+        return;
+    const int bits = position.bits - static_cast<int>(std::ceil(std::log2(offset / limit)));
+    const int least = std::max(datapath::FormatLimits::position_bits.least, position.fraction + 1);
+    throw InputError(fmt::format(
+        "camera.eye is {:.3g} model units from the mesh's centre, ({:.4g}, {:.4g}, {:.4g}), and Transform's sums hold "
+        "eyes in this direction up to {:.3g} away: move camera.eye nearer{}",
+        distance / model_scale.scale, model_scale.centre.x, model_scale.centre.y, model_scale.centre.z,
+        distance / model_scale.scale * limit / offset,
+        bits < least ? "" : fmt::format(", or set formats.position_bits = {}", bits)));
+}
+
+}  // namespace
+
 datapath::TransformParameters make_transform(const CameraSettings& camera, const ModelScale& model_scale,
                                              const datapath::Formats& formats, std::uint64_t& saturated) {
     const ViewAxes view = view_axes(camera);
@@ -49,28 +69,26 @@ datapath::TransformParameters make_transform(const CameraSettings& camera, const
     datapath::TransformParameters result;
     constexpr int fraction = datapath::TransformParameters::matrix_fraction;
     result.exponent = std::max(0, static_cast<int>(std::ceil(std::log2(std::max(largest(x), largest(y))))));
-    const int position_fraction = formats.position.fraction;
+    const double fewer = std::ldexp(1.0, -result.exponent);
+    const auto offset_of = [&](const glm::dvec3& direction, double scale) {
+        return std::ldexp(-glm::dot(direction, eye) * scale, fraction + formats.position.fraction);
+    };
+    check_eye(std::max({std::abs(offset_of(x, fewer)), std::abs(offset_of(y, fewer)), std::abs(offset_of(forward, 1))}),
+              glm::length(eye), model_scale, formats.position);
     const auto row = [&](const glm::dvec3& direction, double scale) {
-        const double offset = std::ldexp(-glm::dot(direction, eye) * scale, fraction + position_fraction);
-        if (std::abs(offset) > std::ldexp(1.0, 61))
-            throw InputError(fmt::format(
-                "camera.eye is {:.3g} model units from the mesh's centre ({:.4g}, {:.4g}, {:.4g}); "
-                "Transform's sums hold eyes up to about {:.3g} away: set camera.eye and camera.target "
-                "nearer to the mesh, or lower formats.position_fraction",
-                glm::length(eye) / model_scale.scale, model_scale.centre.x, model_scale.centre.y, model_scale.centre.z,
-                std::ldexp(1.0, 61 - fraction - position_fraction) / model_scale.scale));
+        const double offset = offset_of(direction, scale);
         return std::array<std::int64_t, 4>{
             to_fixed(direction.x * scale, fraction), to_fixed(direction.y * scale, fraction),
             to_fixed(direction.z * scale, fraction), static_cast<std::int64_t>(std::nearbyint(offset))};
     };
-    result.row_x = row(x, std::ldexp(1.0, -result.exponent));
-    result.row_y = row(y, std::ldexp(1.0, -result.exponent));
+    result.row_x = row(x, fewer);
+    result.row_y = row(y, fewer);
     result.row_w = row(forward, 1);
     // No w reaches 2^62: everything is behind a near plane there, as with one farther away.
-    result.near_plane = static_cast<std::int64_t>(
-        std::min(std::ldexp(camera.near_plane * model_scale.scale, fraction + position_fraction), std::ldexp(1.0, 62)));
+    result.near_plane = static_cast<std::int64_t>(std::min(
+        std::ldexp(camera.near_plane * model_scale.scale, fraction + formats.position.fraction), std::ldexp(1.0, 62)));
     for (std::size_t k = 0; formats.distances && k < 3; ++k)
-        result.eye[k] = to_fixed(eye[static_cast<glm::length_t>(k)], position_fraction);
+        result.eye[k] = to_fixed(eye[static_cast<glm::length_t>(k)], formats.position.fraction);
     const auto rotation = [&](const glm::dvec3& axis) {
         const datapath::Direction d = to_direction(axis, formats.normal, saturated);
         return std::array<std::int32_t, 3>{d.x, d.y, d.z};

@@ -7,7 +7,7 @@ JOBS = {
     "half donut on 18 triangles": None,
     "Utah teapot, half donut": "teapot",
     "Crater Lake on 704 triangles": "crater_lake_704",
-    "head on 1,800 triangles": "head",
+    "head on 2,048 triangles": "head",
 }
 
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <memory>
 #include <mutex>
@@ -64,11 +65,9 @@ class SharedProgress {
 };
 
 [[noreturn]] void refuse_budget(const TuneRequest& request, const std::vector<Explored>& explored) {
-    std::uint64_t least = std::numeric_limits<std::uint64_t>::max(), most = 0;
-    for (const Explored& e : explored) {
+    std::uint64_t least = std::numeric_limits<std::uint64_t>::max();
+    for (const Explored& e : explored)
         least = std::min<std::uint64_t>(least, e.base_triangles);
-        most = std::max(most, e.finest.triangles);
-    }
     if (least > request.goal.triangles)
         throw InputError(
             fmt::format("--triangles {}: the base mesh has {} triangles before any is split: use at "
@@ -76,9 +75,9 @@ class SharedProgress {
                         "a coarser base mesh (mesh.columns, mesh.rows, or --grid auto)",
                         request.goal.triangles, least));
     throw InputError(
-        fmt::format("--triangles {}: with the job's other tests the mesh has {} triangles at any of the "
+        fmt::format("--triangles {}: with the job's other tests the mesh has more at any of the "
                     "thresholds searched: search more of them (--tests), or change the others under [tests]",
-                    request.goal.triangles, most));
+                    request.goal.triangles));
 }
 
 void refuse_beyond_finest(const TuneRequest& request, const std::vector<Explored>& explored) {
@@ -94,6 +93,12 @@ void refuse_beyond_finest(const TuneRequest& request, const std::vector<Explored
                     "edge; "
                     "use at most {}",
                     request.goal.triangles, most, request.job.tests.generation_limit, most));
+}
+
+/// To the six digits that are printed, not below the value.
+double rounded_up(double value) {
+    const double step = std::pow(10.0, std::floor(std::log10(value)) - 5);
+    return (std::floor(value / step) + 1) * step;
 }
 
 [[noreturn]] void refuse_error(const TuneRequest& request, const std::vector<Explored>& explored, double unit,
@@ -113,7 +118,7 @@ void refuse_beyond_finest(const TuneRequest& request, const std::vector<Explored
                     "at least that, "
                     "or try other base meshes (--grid auto)",
                     request.goal.error / unit, request.goal.largest ? "largest" : "RMS",
-                    request.goal.error_of(*least) / unit, unit_name, least->triangles));
+                    rounded_up(request.goal.error_of(*least) / unit), unit_name, least->triangles));
 }
 
 }  // namespace

@@ -84,8 +84,9 @@ std::optional<double> to_number(std::string_view token) {
 
 void require_size(const glm::dvec3& size, const std::string& name) {
     if (!(std::max({size.x, size.y, size.z}) >= smallest_size))
-        throw InputError(
-            fmt::format("{}: the whole mesh is smaller than {:g} model units: scale it up", name, smallest_size));
+        throw InputError(fmt::format(
+            "{}: the whole mesh is smaller than {:g} model units: multiply each coordinate of its vertices by {:g}",
+            name, smallest_size, std::pow(10.0, -std::round(std::log10(std::max({size.x, size.y, size.z}))))));
 }
 
 std::string read_mesh_text(const std::string& path, std::string_view kind) {

@@ -20,31 +20,28 @@ std::string spoken(const char* name) {
 
 std::vector<SaturationFigure> saturation_figures(const MachineSetup& setup, const datapath::Saturations& saturations) {
     const InputSaturations& input = setup.input_saturations;
+    const char* const fault = "the set-up scales to this format, so this is a fault of tessera: report it with the job";
     return {
-        {"input_position", input.position, "value", "components of base vertices beyond the position's format",
-         "widen formats.position_bits"},
+        {"input_position", input.position, "value", "components of base vertices beyond the position's format", fault},
         {"input_normal", input.normal, "value",
-         "components of base vertices' normals and tangents beyond the normal's format", "widen formats.normal_bits"},
+         "components of base vertices' normals and tangents beyond the normal's format", fault},
         {"input_texture", setup.texture_clamped, "vertex",
          "base vertices with u or v outside the map on an axis that clamps, set to its border", nullptr},
         {"input_register", input.registers, "value",
-         "displacement scale and bias, directions of view and light beyond their formats",
-         "widen formats.position_bits or formats.normal_bits"},
-        {"displaced_position", saturations.displaced_position, "value", "P' beyond the position's format",
-         "widen formats.position_bits"},
-        {"normal", saturations.normal, "value", "N, T or N' beyond the normal's format", "widen formats.normal_bits"},
+         "displacement scale and bias, directions of view and light beyond their formats", fault},
+        {"displaced_position", saturations.displaced_position, "value", "P' beyond the position's format", fault},
+        {"normal", saturations.normal, "value", "N, T or N' beyond the normal's format", fault},
         {"screen_position", saturations.screen_position, "value", "P's beyond the screen's format",
-         "widen formats.screen_bits, or move camera.eye back: the View Test measures such edges too "
-         "short"},
+         "set formats.screen_bits = 31, or move camera.eye back: the View Test measures such edges too short"},
         {"view_distance", saturations.view_distance, "value", "w beyond the position's format: the eye is too far away",
-         "widen formats.position_bits"},
-        {"screen_normal", saturations.screen_normal, "value", "N's beyond the normal's format",
-         "widen formats.normal_bits"},
+         fault},
+        {"screen_normal", saturations.screen_normal, "value", "N's beyond the normal's format", fault},
         {"degenerate_normal", saturations.degenerate_normal, "value", "zero vectors that stayed zero",
-         "the normals at an edge's ends are opposite: use a base mesh with more triangles there"},
+         "the normals or tangents at an edge's ends are opposite: raise mesh.columns and mesh.rows, or in a mesh's file "
+         "remove the normals (vn) or the mirrored texture coordinates"},
         {"generation", saturations.generation, "value",
          "generations of inserted vertices beyond their field: only with the Generation Test off",
-         "tests.generation = true, or widen formats.generation_bits"},
+         "set tests.generation = true"},
         {"intensity", saturations.intensity, "value",
          "vertices that face the light fully: 256 of 256, lit as 255, the maximum of Lighting's 8 bits", nullptr,
          "no key widens Lighting's 8 bits, and their maximum is full light"},

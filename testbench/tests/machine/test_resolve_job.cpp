@@ -201,11 +201,14 @@ TEST_CASE("a model beyond the range of the camera keys is refused with a remedy"
     const auto refusal = [](const BaseMesh& mesh) {
         return testing::input_error_of([&] { resolve_job(Job{}, mesh, map_of(0, 1)); });
     };
-    CHECK_THAT(refusal(make_sphere(8, 4, 1e20)),
-               Contains("out of range") && Contains("derived from a base mesh of 2e+20 model units; scale the mesh"));
+    CHECK_THAT(
+        refusal(make_sphere(8, 4, 1e20)),
+        Contains("out of range") &&
+            Contains(
+                "derived from a base mesh of 2e+20 model units; multiply each coordinate of the mesh's vertices by 1e-20"));
     CHECK_THAT(refusal(box(2, 2, 2, {0, -3e13, 5})),
-               Contains("out of range") && Contains("derived from a base mesh of 2 model units around (1, "
-                                                    "-3e+13, 6); move the mesh to the origin"));
+               Contains("derived from a base mesh of 2 model units around (1, "
+                        "-3e+13, 6); subtract (1, -3e+13, 6) from each vertex of the mesh"));
 }
 
 TEST_CASE("setup and golden model refuse a job that is not resolved as a program error") {

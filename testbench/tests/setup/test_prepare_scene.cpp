@@ -138,7 +138,7 @@ TEST_CASE("an invalid scene is refused with the value and a remedy") {
         {"the map has 16 values, but map_width x map_height = 20", [](Scene& s) { s.map_width = 5; }},
         {"the map has a value that is not finite", [](Scene& s) { s.map[3] = static_cast<float>(nan); }},
         {"map_low > map_high", [](Scene& s) { s.map_low = 2; }},
-        {"Transform's sums hold eyes up to",
+        {"Transform's sums hold eyes",
          [](Scene& s) {
              s.settings.camera.eye = {0, 0, 1e12};
              s.settings.camera.up = {0, 1, 0};

@@ -1,0 +1,230 @@
+// Each remedy that a message names, followed literally: the message goes, and the exit code is 0. The table is remedies.h.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "testbench/tests/commands/remedies.h"
+#include "testbench/tests/support/program_runner.h"
+
+using namespace tessera;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// A job that takes a tenth of a second, and shell functions for the table.
+constexpr const char* small_job = R"(mode = "functional"
+[map]
+width = 48
+height = 48
+[tests]
+generation_limit = 2
+[output]
+picture = false
+folder = "out"
+)";
+constexpr const char* prelude = R"(
+# run KEY=VALUE ...: the small job with these keys
+run() { local s a=(); for s in "$@"; do a+=(--set "$s"); done; tessera run small.toml "${a[@]}"; }
+# the same, without the checks
+unchecked() { run check.golden=false check.end_to_end=false check.invariants=false check.work=false check.reads=false "$@"; }
+# square SCALE X Y Z: an OBJ file, a square of this size at this place
+square() {
+    awk -v S=$1 -v X=${2:-0} -v Y=${3:-0} -v Z=${4:-0} 'BEGIN {
+        for (k = 0; k < 4; ++k) {
+            u = k == 1 || k == 2; v = k > 1
+            printf "v %.12g %.12g %.12g\nvt %d %d\n", X + S * u, Y + S * v, Z, u, v
+        }
+        print "f 1/1 2/2 3/3 4/4"
+    }'
+}
+# strip U: an OBJ file, two squares side by side; u is 0, 1, U
+strip() {
+    for y in 0 1; do printf 'v %d %d 0\n' 0 $y 1 $y 2 $y; printf 'vt %d %d\n' 0 $y 1 $y $1 $y; done
+    echo f 1/1 2/2 5/5 4/4; echo f 2/2 3/3 6/6 5/5
+}
+# patch [SIZE]: a file of one Bezier patch, a flat square
+patch() {
+    awk -v S=${1:-1} 'BEGIN {
+        print "1\n1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16\n16"
+        for (k = 0; k < 16; ++k) printf "%g,%g,0\n", S * (k % 4), S * int(k / 4)
+    }'
+}
+# quadric: a surface file
+quadric() { printf '%s\n' '[quadric]' 'shape = "sphere"' 'radius = 2' 'centre = [0, 0, -1]'; }
+# pgm WIDTH HEIGHT [MAXVAL]: an ASCII map, a slope
+pgm() { awk -v W=$1 -v H=$2 -v M=${3:-255} 'BEGIN { print "P2", W, H, M; for (k = 0; k < W * H; ++k) print k % (M + 1) }'; }
+)";
+
+ProgramEnd shell(const std::string& script, const fs::path& folder, const std::vector<std::string>& arguments = {}) {
+    return run_program(Arguments{"bash", "-euo", "pipefail", "-c",
+                                 "tessera() { '" + tessera_program() + "' \"$@\"; }\n" + prelude + script, "shell"} +
+                           arguments,
+                       folder);
+}
+
+/// Matches the advice in a message; each {} of its format is a group.
+std::regex pattern_of(const std::string& advice) {
+    static const std::regex special(R"([.*+?^$()\[\]|\\])"), field(R"(\{[^}]*\})");
+    std::string pattern = std::regex_replace(advice, special, R"(\$&)");
+    pattern = std::regex_replace(pattern, field, R"((\[[^\]]*\]|"[^"]*"|\S+?))");
+    return std::regex(advice.back() == ' ' ? pattern : pattern + R"((?=[;:,.)]*(?:\s|$)))");
+}
+
+/// The advice's `key = value`, as settings.
+std::vector<std::string> settings_of(const std::string& advice) {
+    static const std::regex setting(R"(([a-z_]+(?:\.[a-z_]+)?)`? ?= ?("[^"]*"|\[[^\]]*\]|[^\s;,)]*[^\s;,.)]))");
+    std::vector<std::string> settings;
+    for (std::sregex_iterator found(advice.begin(), advice.end(), setting); found != std::sregex_iterator(); ++found)
+        settings.push_back((*found)[1].str() + "=" + (*found)[2].str());
+    return settings;
+}
+
+void follow(const std::vector<Remedy>& remedies) {
+    for (const Remedy& remedy : remedies) {
+        const TestFolder here;
+        here.write("small.toml", small_job);
+        const std::regex advice = pattern_of(remedy.advice);
+        const ProgramEnd before = shell(remedy.trigger, here.path());
+        INFO(remedy.trigger << "\n" << remedy.advice << "\n" << before.text());
+        std::smatch found;
+        const std::string text = before.out + before.err;
+        CHECK(std::regex_search(text, found, advice));
+        if (found.empty())
+            continue;
+        std::string next = remedy.follow;
+        if (next.empty()) {
+            const std::vector<std::string> settings = settings_of(found[0]);
+            CHECK_FALSE(settings.empty());
+            next = remedy.trigger;
+            for (const std::string& setting : settings)
+                next += " '" + setting + "'";
+        }
+        std::vector<std::string> printed;
+        for (std::size_t k = 1; k < found.size(); ++k)
+            printed.push_back(found[k]);
+        const ProgramEnd after = shell(next, here.path(), printed);
+        INFO("followed: " << next << "\n" << after.text());
+        CHECK(after.exit_code == 0);
+        CHECK_FALSE(std::regex_search(after.out + after.err, advice));
+    }
+}
+
+/// A string literal of the sources; adjacent ones are one.
+struct Literal {
+    std::string place, text;
+    bool help = false;  ///< of an option or key
+};
+
+std::string unescaped(const std::string& text) {
+    std::string result;
+    for (std::size_t k = 0; k < text.size(); ++k)
+        result += text[k] != '\\' ? text[k] : text[++k] == 'n' ? '\n' : text[k];
+    return result;
+}
+
+void collect(const fs::path& file, std::vector<Literal>& literals) {
+    static const std::regex token(
+        R"re(//[^\n]*|/\*[^]*?\*/|R"\(([^]*?)\)"|"((?:[^"\\\n]|\\[^])*)"|'(?:[^'\\]|\\[^])+')re", std::regex::optimize);
+    static const std::regex not_message(R"(#include|add_option|add_flag|add_subcommand|key\.add\()");
+    const std::string source = read_all(file);
+    std::string statement;  // since the last ; { or }
+    bool joined = false;    // to the last literal
+    for (std::sregex_iterator found(source.begin(), source.end(), token); found != std::sregex_iterator(); ++found) {
+        const std::string code = found->prefix();
+        const std::size_t ends = code.find_last_of(";{}");
+        statement = ends == std::string::npos ? statement + code : code.substr(ends + 1);
+        joined = joined && code.find_first_not_of(" \t\n") == std::string::npos;
+        if (!(*found)[1].matched && !(*found)[2].matched)
+            continue;
+        const std::string text = (*found)[1].matched ? (*found)[1].str() : unescaped((*found)[2]);
+        if (joined) {
+            literals.back().text += text;
+        } else {
+            const auto line = 1 + std::count(source.begin(), source.begin() + found->position(), '\n');
+            literals.push_back({fs::relative(file, source_folder()).string() + ":" + std::to_string(line), text,
+                                std::regex_search(statement, not_message)});
+        }
+        joined = true;
+    }
+}
+
+/// Every text of the program and its libraries that a user may see.
+std::vector<Literal> literals_of_messages() {
+    std::vector<Literal> literals;
+    for (const char* const room : {"modules", "testbench"}) {
+        const fs::path root = source_folder() / room;
+        for (auto entry = fs::recursive_directory_iterator(root); entry != fs::recursive_directory_iterator();
+             ++entry) {
+            const std::string name = fs::relative(entry->path(), root).string();
+            if (entry->is_directory() &&
+                (name == "tests" || name == "prove" || name == "benchmark" || name == "examples"))
+                entry.disable_recursion_pending();
+            const std::string extension = entry->path().extension().string();
+            if (extension == ".cpp" || extension == ".h")
+                collect(entry->path(), literals);
+        }
+    }
+    return literals;
+}
+
+/// Whether a text tells its reader to do something.
+bool advises(const std::string& text) {
+    static const std::regex advice(
+        "(?:^|[:;.,(] |, or |\\bor )(?:add|allow|bake|bring|call|change|check|choose|close|compare|convert|correct|create|cut|"
+        "decrease|delete|divide|end|enlarge|export|flatten|free|give|increase|install|join|keep|leave|lower|make|measure|mount|"
+        "move|multiply|name|narrow|omit|open|quote|raise|reduce|remove|rename|repair|replace|restore|run|save|search|set|"
+        "shorten|simplify|simulate|subtract|sweep|switch|take|triangulate|try|tune|turn|use|widen|write)"
+        "(?! (?:by|of|to|up)\\b) [`\"a-z0-9{(-]|see `|\\bneeds? [`0-9{]|\\bmust (?:be|name|end|differ|not)\\b",
+        std::regex::icase | std::regex::optimize);
+    return text.find(' ') != std::string::npos && std::regex_search(text, advice);
+}
+
+std::string listed(const std::set<std::string>& texts) {
+    std::ostringstream list;
+    for (const std::string& text : texts)
+        list << "\n  " << text;
+    return list.str();
+}
+
+}  // namespace
+
+TEST_CASE("remedies: each that a message of the sources names has a case in the table") {
+    std::vector<std::string> known;
+    for (const auto& table : remedies())
+        for (const Remedy& remedy : table.second)
+            known.push_back(remedy.advice);
+    for (const NotFollowed& text : not_followed())
+        known.push_back(text.text);
+    std::set<std::string> used, missing, unused;
+    for (const Literal& literal : literals_of_messages()) {
+        bool found = false;
+        for (const std::string& text : known)
+            if (literal.text.find(text) != std::string::npos) {
+                used.insert(text);
+                found = true;
+            }
+        if (!found && !literal.help && advises(literal.text))
+            missing.insert(literal.place + ": " + literal.text);
+    }
+    for (const std::string& text : known)
+        if (used.count(text) == 0)
+            unused.insert(text);
+    INFO("no case in testbench/tests/commands/remedies.h:" << listed(missing));
+    INFO("cases of no message:" << listed(unused));
+    CHECK(missing.empty());
+    CHECK(unused.empty());
+}
+
+// clang-format off
+TEST_CASE("remedies of jobs and settings") { follow(remedies().at("job")); }
+TEST_CASE("remedies of maps") { follow(remedies().at("map")); }
+TEST_CASE("remedies of meshes") { follow(remedies().at("mesh")); }
+TEST_CASE("remedies of the machine") { follow(remedies().at("machine")); }
+TEST_CASE("remedies of results and their checks") { follow(remedies().at("result")); }
+TEST_CASE("remedies of commands and files") { follow(remedies().at("command")); }
+// clang-format on
