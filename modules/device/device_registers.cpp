@@ -2,6 +2,7 @@
 #include "modules/datapath/edge_tests.h"
 #include "modules/device/device.h"
 #include "modules/device/records.h"
+#include "modules/sockets/generic_payload.h"
 
 namespace tessera {
 
@@ -27,19 +28,22 @@ void Device::b_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& de
     }
     payload.set_dmi_allowed(false);
     payload.set_response_status(access(payload, delay));
-    const unsigned words = payload.is_response_ok() ? payload.get_data_length() / 4 : 1;
+    const bool moved = payload.is_response_ok() && payload.get_command() != tlm::TLM_IGNORE_COMMAND;
+    const unsigned words = moved ? payload.get_data_length() / 4 : 1;
     delay += pipeline_.clock.period() * (words * design_.register_cycles);
 }
 
 tlm::tlm_response_status Device::access(tlm::tlm_generic_payload& payload, const sc_core::sc_time& delay) {
     const std::uint64_t first = payload.get_address();
     const unsigned length = payload.get_data_length();
-    if (!payload.is_read() && !payload.is_write())
-        return tlm::TLM_COMMAND_ERROR_RESPONSE;
-    if (payload.get_byte_enable_ptr() != nullptr)
+    if (payload.get_command() == tlm::TLM_IGNORE_COMMAND)
+        return tlm::TLM_OK_RESPONSE;
+    if (!all_bytes_enabled(payload))
         return tlm::TLM_BYTE_ENABLE_ERROR_RESPONSE;
-    if (length == 0 || length % 4 != 0 || first % 4 != 0 || payload.get_streaming_width() < length)
+    if (length == 0 || length % 4 != 0 || first % 4 != 0 || is_stream(payload))
         return tlm::TLM_BURST_ERROR_RESPONSE;
+    if (payload.get_data_ptr() == nullptr)
+        return tlm::TLM_GENERIC_ERROR_RESPONSE;
     if (first >= register_bytes || length > register_bytes - first)
         return tlm::TLM_ADDRESS_ERROR_RESPONSE;
     unsigned char* const data = payload.get_data_ptr();
@@ -120,7 +124,7 @@ void Device::write(std::uint32_t offset, std::uint32_t word, const sc_core::sc_t
 unsigned Device::transport_dbg(tlm::tlm_generic_payload& payload) {
     const std::uint64_t first = payload.get_address();
     unsigned moved = 0;
-    if (first % 4 != 0)
+    if (first % 4 != 0 || payload.get_data_ptr() == nullptr)
         return 0;
     for (; payload.get_data_length() - moved >= 4; moved += 4) {
         const DeviceRegister* const field = file_.find(first + moved);

@@ -7,6 +7,8 @@
 #include <tlm>
 #include <vector>
 
+#include "modules/sockets/generic_payload.h"
+
 /// Memory from address 0. 20 ns per transfer.
 class Memory : public sc_core::sc_module {
   public:
@@ -20,16 +22,23 @@ class Memory : public sc_core::sc_module {
   private:
     void b_transport(int, tlm::tlm_generic_payload& payload, sc_core::sc_time& delay) {
         delay += sc_core::sc_time(20, sc_core::SC_NS);
+        payload.set_response_status(access(payload));
+    }
+    tlm::tlm_response_status access(tlm::tlm_generic_payload& payload) {
         const std::uint64_t address = payload.get_address(), length = payload.get_data_length();
-        if (length > bytes.size() || address > bytes.size() - length) {
-            payload.set_response_status(tlm::TLM_ADDRESS_ERROR_RESPONSE);
-            return;
-        }
+        if (payload.get_command() == tlm::TLM_IGNORE_COMMAND)
+            return tlm::TLM_OK_RESPONSE;
+        if (length == 0 || tessera::is_stream(payload))
+            return tlm::TLM_BURST_ERROR_RESPONSE;
+        if (!tessera::all_bytes_enabled(payload))
+            return tlm::TLM_BYTE_ENABLE_ERROR_RESPONSE;
+        if (length > bytes.size() || address > bytes.size() - length)
+            return tlm::TLM_ADDRESS_ERROR_RESPONSE;
         if (payload.is_read())
             std::copy_n(&bytes[address], length, payload.get_data_ptr());
         else
             std::copy_n(payload.get_data_ptr(), length, &bytes[address]);
-        payload.set_response_status(tlm::TLM_OK_RESPONSE);
+        return tlm::TLM_OK_RESPONSE;
     }
 };
 

@@ -35,6 +35,8 @@ struct BusMemory : sc_core::sc_module {
     std::function<Range()> writable_now;  ///< if set, in their place
     unsigned writes_outside = 0;
     std::uint64_t failing_from = 1, failing_to = 0;  ///< answers accesses to these addresses by an error
+    /// If set: an access waits for as long as this returns, and fails if it returns more than zero.
+    std::function<sc_core::sc_time(const tlm::tlm_generic_payload&)> fails_after;
     unsigned reads = 0, writes = 0, longest = 0, across = 0;
     std::uint64_t bytes_read = 0, bytes_written = 0;
     unsigned burst_bytes = 64;
@@ -63,12 +65,13 @@ struct BusMemory : sc_core::sc_module {
         longest = std::max(longest, payload.get_data_length());
         across += first / burst_bytes != (first + length - 1) / burst_bytes ? 1u : 0u;
         longest_delay = std::max(longest_delay, delay);
-        if (waits)
-            wait(latency);
+        const sc_core::sc_time failure = fails_after ? fails_after(payload) : sc_core::SC_ZERO_TIME;
+        if (waits || failure != sc_core::SC_ZERO_TIME)
+            wait(std::max(latency, failure));
         else
             delay += latency;
         if (first < base || first - base > bytes.size() || length > bytes.size() - (first - base) ||
-            (first + length > failing_from && first <= failing_to)) {
+            (first + length > failing_from && first <= failing_to) || failure != sc_core::SC_ZERO_TIME) {
             payload.set_response_status(tlm::TLM_ADDRESS_ERROR_RESPONSE);
             return;
         }
@@ -125,7 +128,8 @@ struct Processor : sc_core::sc_module {
     }
 
     tlm::tlm_response_status access(tlm::tlm_command command, std::uint64_t address, unsigned char* data,
-                                    unsigned length, unsigned char* enables = nullptr, unsigned width = ~0u) {
+                                    unsigned length, unsigned char* enables = nullptr, unsigned width = ~0u,
+                                    unsigned enables_length = ~0u) {
         ++accesses;
         tlm::tlm_generic_payload payload;
         payload.set_command(command);
@@ -134,7 +138,7 @@ struct Processor : sc_core::sc_module {
         payload.set_data_length(length);
         payload.set_streaming_width(width == ~0u ? length : width);
         payload.set_byte_enable_ptr(enables);
-        payload.set_byte_enable_length(enables == nullptr ? 0 : length);
+        payload.set_byte_enable_length(enables == nullptr ? 0 : enables_length == ~0u ? length : enables_length);
         if (approximately_timed) {
             transport(payload);
         } else {

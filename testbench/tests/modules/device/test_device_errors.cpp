@@ -246,7 +246,7 @@ struct BusAccess {
     unsigned length;
     tlm::tlm_response_status response;
     unsigned width = ~0u;
-    bool enables = false;
+    std::vector<unsigned char> enables = {};
 };
 
 constexpr tlm::tlm_command reading = tlm::TLM_READ_COMMAND, writing = tlm::TLM_WRITE_COMMAND;
@@ -260,8 +260,38 @@ const std::vector<BusAccess> accesses{
     {"nothing", reading, 0, 0, tlm::TLM_BURST_ERROR_RESPONSE},
     {"six bytes", writing, 0x30, 6, tlm::TLM_BURST_ERROR_RESPONSE},
     {"a stream", reading, 0, 8, tlm::TLM_BURST_ERROR_RESPONSE, 4},
-    {"byte enables", writing, 0x30, 4, tlm::TLM_BYTE_ENABLE_ERROR_RESPONSE, ~0u, true},
-    {"neither read nor write", tlm::TLM_IGNORE_COMMAND, 0, 4, tlm::TLM_COMMAND_ERROR_RESPONSE},
+    {"a stream within a word", writing, 0x30, 4, tlm::TLM_BURST_ERROR_RESPONSE, 2},
+    {"a stream of seven eighths", writing, 0x30, 8, tlm::TLM_BURST_ERROR_RESPONSE, 7},
+    {"a streaming width of 0, which the standard forbids", reading, 0, 4, tlm::TLM_OK_RESPONSE, 0},
+    {"a streaming width of 0, several words", writing, 0x30, 32, tlm::TLM_OK_RESPONSE, 0},
+    {"a streaming width above the length", writing, 0x30, 8, tlm::TLM_OK_RESPONSE, 64},
+    {"every byte enabled", writing, 0x30, 4, tlm::TLM_OK_RESPONSE, ~0u, {0xff, 0xff, 0xff, 0xff}},
+    {"every byte enabled by a pattern of one", writing, 0x30, 8, tlm::TLM_OK_RESPONSE, ~0u, {0xff}},
+    {"every byte enabled by a pattern of three", reading, 0x30, 8, tlm::TLM_OK_RESPONSE, ~0u, {0xff, 0xff, 0xff}},
+    {"a pattern that is disabled only beyond the data",
+     writing,
+     0x30,
+     4,
+     tlm::TLM_OK_RESPONSE,
+     ~0u,
+     {0xff, 0xff, 0xff, 0xff, 0, 0}},
+    {"byte enables and a streaming width of 0", writing, 0x30, 4, tlm::TLM_OK_RESPONSE, 0, {0xff, 0xff}},
+    {"the last byte disabled", writing, 0x30, 4, tlm::TLM_BYTE_ENABLE_ERROR_RESPONSE, ~0u, {0xff, 0xff, 0xff, 0}},
+    {"a read with a byte disabled", reading, 0, 4, tlm::TLM_BYTE_ENABLE_ERROR_RESPONSE, ~0u, {0, 0xff, 0xff, 0xff}},
+    {"every other byte of two words", writing, 0x30, 8, tlm::TLM_BYTE_ENABLE_ERROR_RESPONSE, ~0u, {0xff, 0}},
+    {"the second of two words disabled",
+     writing,
+     0x30,
+     8,
+     tlm::TLM_BYTE_ENABLE_ERROR_RESPONSE,
+     ~0u,
+     {0xff, 0xff, 0xff, 0xff, 0, 0, 0, 0}},
+    {"no byte enabled", writing, 0x30, 4, tlm::TLM_BYTE_ENABLE_ERROR_RESPONSE, ~0u, {0}},
+    {"neither enabled nor disabled", writing, 0x30, 4, tlm::TLM_BYTE_ENABLE_ERROR_RESPONSE, ~0u, {1}},
+    {"neither read nor write", tlm::TLM_IGNORE_COMMAND, 0x30, 4, tlm::TLM_OK_RESPONSE},
+    {"neither read nor write, control", tlm::TLM_IGNORE_COMMAND, offset::control, 4, tlm::TLM_OK_RESPONSE},
+    {"neither read nor write, a read-only register", tlm::TLM_IGNORE_COMMAND, 0, 4, tlm::TLM_OK_RESPONSE},
+    {"neither read nor write, nothing", tlm::TLM_IGNORE_COMMAND, 0, 0, tlm::TLM_OK_RESPONSE},
     {"no register", reading, 0x1c, 4, tlm::TLM_ADDRESS_ERROR_RESPONSE},
     {"a hole among registers", reading, 0x18, 12, tlm::TLM_ADDRESS_ERROR_RESPONSE},
     {"beyond the last", reading, 0x3fc, 4, tlm::TLM_ADDRESS_ERROR_RESPONSE},
@@ -290,19 +320,26 @@ TEST_CASE("register accesses: each is done completely, or is refused with its re
             cpu.approximately_timed = timed;
             for (const BusAccess& access : accesses) {
                 INFO(access.what << (timed ? ", approximately timed" : ""));
-                std::vector<unsigned char> data(64, 0x55), enables(64, 0xff);
+                std::vector<unsigned char> data(64, 0x55), enables = access.enables;
                 const auto before = snapshot();
                 CHECK(cpu.access(access.command, access.address, data.data(), access.length,
-                                 access.enables ? enables.data() : nullptr, access.width) == access.response);
-                if (access.response != tlm::TLM_OK_RESPONSE) {
+                                 enables.empty() ? nullptr : enables.data(), access.width,
+                                 static_cast<unsigned>(enables.size())) == access.response);
+                if (access.response != tlm::TLM_OK_RESPONSE || access.command == tlm::TLM_IGNORE_COMMAND) {
                     CHECK(snapshot() == before);
                     CHECK(data == std::vector<unsigned char>(64, 0x55));
                 } else if (access.command == writing) {
                     CHECK(snapshot() != before);
                     std::fill(data.begin(), data.end(), 0);
                     CHECK(cpu.access(writing, access.address, data.data(), access.length) == tlm::TLM_OK_RESPONSE);
+                } else {
+                    CHECK(data[0] != 0x55);
                 }
             }
+            unsigned char enable = 0xff, word[4] = {};
+            CHECK(cpu.access(reading, 0, nullptr, 4) == tlm::TLM_GENERIC_ERROR_RESPONSE);
+            CHECK(cpu.access(writing, 0x30, nullptr, 4) == tlm::TLM_GENERIC_ERROR_RESPONSE);
+            CHECK(cpu.access(writing, 0x30, word, 4, &enable, ~0u, 0) == tlm::TLM_BYTE_ENABLE_ERROR_RESPONSE);
         }
     };
     bench.run();
@@ -430,6 +467,8 @@ TEST_CASE("debug transport reads all registers, writes plain ones, and starts no
         CHECK(debug(writing, offset::ring_address, two) == 8);
         CHECK(debug(reading, offset::ring_address, odd) == 4);
         CHECK(debug(tlm::TLM_IGNORE_COMMAND, offset::ring_address, word) == 0);
+        std::vector<unsigned char> none;
+        CHECK(debug(reading, 0, none) == 0);
         CHECK(debug(reading, 0x1c, word) == 0);
         CHECK(debug(reading, 1, word) == 0);
         CHECK(debug(reading, ~std::uint64_t{0}, word) == 0);
