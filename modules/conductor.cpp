@@ -208,6 +208,7 @@ void Conductor::send(const schedule::Source::Next& next) {
 
 void Conductor::conduct() {
     for (;;) {
+        machine_.begin_frame();
         schedule_->send(host_.total() - host_.sent(), schedule_->last());
         for (unsigned passes = 1;; ++passes) {
             const schedule::Source::Next& next = schedule_->next();
@@ -218,6 +219,7 @@ void Conductor::conduct() {
             if (passes % passes_between_waits == 0)
                 wait(sc_core::SC_ZERO_TIME);
         }
+        machine_.end_frame();
         wait(host_.again());
     }
 }

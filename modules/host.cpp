@@ -26,31 +26,47 @@ void Host::bind() {
     summed_height_table.bind(machine_.height_table.host);
 }
 
+const TableMemory& Host::table_at(std::uint64_t address) const {
+    const auto within = [&](const datapath::TableLayout& table) { return address - table.base < table.bytes(); };
+    if (within(machine_.registers().normal_map))
+        return machine_.normal_map;
+    if (within(machine_.registers().height_table))
+        return machine_.height_table;
+    return machine_.displacement_map;
+}
+
 void Host::start_of_simulation() {
     fill_tables_([this](std::uint64_t address, const unsigned char* bytes, std::size_t count) {
-        write_table(address, bytes, count);
+        machine_.write_table(table_at(address), address, bytes, count);
     });
+    begin_frame();
     if (machine_.transport() == Transport::non_blocking)
         machine_.clock.wake(*this);
 }
 
-void Host::write_table(std::uint64_t address, const unsigned char* bytes, std::size_t count) {
-    const auto within = [&](const datapath::TableLayout& table) { return address - table.base < table.bytes(); };
-    auto& socket = within(machine_.registers().normal_map)     ? normal_map
-                   : within(machine_.registers().height_table) ? summed_height_table
-                                                               : displacement_map;
-    std::vector<unsigned char> row(bytes, bytes + count);
-    tlm::tlm_generic_payload payload;
-    payload.set_command(tlm::TLM_WRITE_COMMAND);
-    payload.set_address(address);
-    payload.set_data_ptr(row.data());
-    payload.set_data_length(static_cast<unsigned>(count));
-    payload.set_streaming_width(payload.get_data_length());
-    if (socket->transport_dbg(payload) != count)
-        SC_REPORT_ERROR("tessera/host", "a table memory did not accept a row of its table");
+/// All hosts have filled their tables: another machine's may have gone to the same place.
+void Host::check_tables() {
+    if (std::exchange(tables_checked_, true) || !machine_.reads_tables_elsewhere())
+        return;
+    fill_tables_([this](std::uint64_t address, const unsigned char* bytes, std::size_t count) {
+        machine_.holds_table(table_at(address), address, bytes, count);
+    });
+}
+
+void Host::begin_frame() {
+    machine_.begin_frame();
+    if (total() == 0)
+        machine_.end_frame();
+}
+
+void Host::sent_one() {
+    if (++sent_ == total())
+        machine_.end_frame();
 }
 
 void Host::send_again() {
+    if (sent_ == total())
+        begin_frame();
     sent_ = 0;
     if (machine_.transport() == Transport::non_blocking)
         machine_.clock.wake(*this);
@@ -59,17 +75,19 @@ void Host::send_again() {
 }
 
 void Host::step() {
+    check_tables();
     while (sent_ < total() && to_get_triangle.free()) {
         offered_ = next();
-        ++sent_;
+        sent_one();
         to_get_triangle.send(offered_);
     }
 }
 
 void Host::send_next(sc_core::sc_time& delay) {
+    check_tables();
     datapath::Triangle triangle = next();
     to_get_triangle->b_transport(triangle, delay);
-    ++sent_;
+    sent_one();
 }
 
 void Host::send_triangles() {

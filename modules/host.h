@@ -13,8 +13,8 @@ namespace tessera {
 /// Writes bytes to an address of the machine's memory.
 using TableWriter = std::function<void(std::uint64_t address, const unsigned char* bytes, std::size_t count)>;
 
-/// The host CPU (paper figure 7): fills the three tables through the memories' debug transport before simulation
-/// starts, then sends base triangles, one after another, to Get Triangle.
+/// The host CPU (paper figure 7): fills the three tables before simulation starts (Pipeline::write_table), then sends
+/// base triangles, one after another, to Get Triangle.
 /// With n machines each has its own host, which sends every n-th base triangle.
 /// Get Triangle blocks it while the Triangle Queue is at its watermark. In timed mode it offers the next triangle in
 /// the cycle in which the last was accepted: the host's bus is not modelled.
@@ -24,6 +24,7 @@ class Host : public sc_core::sc_module, public CycleProcess {
     using FillTables = std::function<void(const TableWriter&)>;
 
     StreamOutput<datapath::Triangle> to_get_triangle{"to_get_triangle"};
+    /// The machine's own table memories, to look at.
     tlm_utils::simple_initiator_socket<Host> displacement_map{"displacement_map"};
     tlm_utils::simple_initiator_socket<Host> normal_map{"normal_map"};
     tlm_utils::simple_initiator_socket<Host> summed_height_table{"summed_height_table"};
@@ -52,7 +53,10 @@ class Host : public sc_core::sc_module, public CycleProcess {
     void start_of_simulation() override;
     void send_triangles();
     void step() override;
-    void write_table(std::uint64_t address, const unsigned char* bytes, std::size_t count);
+    const TableMemory& table_at(std::uint64_t address) const;
+    void begin_frame();
+    void sent_one();
+    void check_tables();
 
     Pipeline& machine_;
     const std::vector<datapath::Triangle>& triangles_;
@@ -61,6 +65,7 @@ class Host : public sc_core::sc_module, public CycleProcess {
     datapath::Triangle offered_;
     sc_core::sc_event again_{"again"};
     std::uint64_t sent_ = 0;
+    bool tables_checked_ = false;
 };
 
 }  // namespace tessera

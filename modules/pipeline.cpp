@@ -1,7 +1,9 @@
 #include "modules/pipeline.h"
 
 #include <algorithm>
+#include <sstream>
 #include <string>
+#include <utility>
 
 #include "modules/datapath/pack_triangle.h"
 
@@ -84,6 +86,7 @@ Pipeline::Pipeline(const sc_core::sc_module_name& name, const datapath::Register
           (std::string(kind_of(registers.formats.height_test).table) + "_cache").c_str(), registers.height_table,
           design.timing.*kind_of(registers.formats.height_test).table_timing, design.timing.stalls)),
       registers_(registers),
+      answer_limit_(clock.period() * design.answer_cycles),
       transport_(design.transport),
       conducted_(design.conducted),
       random_stalls_(design.timing.stalls.per_mille > 0) {
@@ -94,10 +97,11 @@ Pipeline::Pipeline(const sc_core::sc_module_name& name, const datapath::Register
     });
     attach();
     wire(units);
+    see_where_ports_lead();
     SC_HAS_PROCESS(Pipeline);
     SC_METHOD(see_whether_drained);
     dont_initialize();
-    sensitive << clock.quiet() << triangle_queue.emptied();
+    sensitive << clock.quiet() << triangle_queue.emptied() << frame_ended_;
 }
 
 std::unique_ptr<TableCache> Pipeline::make_cache(const char* name, const datapath::TableLayout& layout,
@@ -114,21 +118,112 @@ std::unique_ptr<DisplacementMap> Pipeline::make_second_side(const datapath::Regi
                                              design.timing.stalls);
 }
 
-namespace {
-
-/// Joins a port to the table, or to the cache in front of it.
-void join(UnitFactory& factory, MemoryPort& port, TableMemory& table, TableCache* cache) {
+/// Joins a unit's port to the table, or to the cache in front of it.
+void Pipeline::join(UnitFactory& factory, MemoryPort& port, TableMemory& table, TableCache* cache) {
     if (cache == nullptr)
         factory.join(port, table);
     else
         factory.join(port, *cache);
+    readers_.push_back({&port, &table == displacement_map_for_tests.get() ? &displacement_map : &table});
+}
+
+namespace {
+
+/// Whether the port is joined to one of the machine's memories, possibly by way of something else.
+bool leads_to(const std::vector<Unit*>& units, const MemoryPort& port) {
+    return std::any_of(units.begin(), units.end(), [&](const Unit* unit) { return port.memory() == unit; });
 }
 
 }  // namespace
 
+/// Looks for ports that a UnitFactory has joined elsewhere: their memories might not answer, and others may write to
+/// them.
+void Pipeline::see_where_ports_lead() {
+    for (TableMemory* table : {static_cast<TableMemory*>(&displacement_map), static_cast<TableMemory*>(&normal_map),
+                               static_cast<TableMemory*>(&height_table)})
+        if (std::none_of(readers_.begin(), readers_.end(), [&](const TableReader& reader) {
+                return reader.table == table && leads_to(units_, *reader.port);
+            }))
+            table->has_no_reader();
+    std::vector<MemoryPort*> ports;
+    for (const TableReader& reader : readers_)
+        ports.push_back(reader.port);
+    for (TableCache* cache : caches_)
+        ports.push_back(&cache->table);
+    for (MemoryPort* port : ports)
+        tables_elsewhere_ = watch(*port) || tables_elsewhere_;
+    if (watch(triangle_queue.off_chip_memory))
+        triangle_queue.check_off_chip_memory();
+}
+
+/// Returns false if the port is joined to a memory of the machine, with nothing in between.
+bool Pipeline::watch(MemoryPort& port) {
+    if (!port.interposed() && leads_to(units_, port))
+        return false;
+    const auto state = [&port] {
+        const auto* const memory = dynamic_cast<const Unit*>(port.memory());
+        const std::string contents = memory == nullptr ? std::string{} : memory->describe_contents();
+        const bool offered = port.on_offer() && port.requests_under_way() == 1;
+        return std::string(offered ? ", not even END_REQ" : "") +
+               (contents.empty() ? "" : " (" + std::string(memory->name()) + ": " + contents + ")");
+    };
+    const std::string name = "watch_" + std::to_string(watches_.size());
+    watches_.push_back(std::make_unique<AnswerWatch>(name.c_str(), port.socket.name(), answer_limit_, state));
+    port.watched_by(*watches_.back());
+    return true;
+}
+
+namespace {
+
+bool report_table(const MemoryPort& port, std::uint64_t address, const char* what) {
+    std::ostringstream message;
+    message << port.socket.name() << ": " << what << " at address 0x" << std::hex << address;
+    SC_REPORT_ERROR("tessera/pipeline", message.str().c_str());
+    return false;
+}
+
+}  // namespace
+
+bool Pipeline::write_table(const TableMemory& table, std::uint64_t address, const unsigned char* bytes,
+                           std::size_t count) {
+    for (const TableReader& reader : readers_)
+        if (reader.table == &table && !reader.port->load(address, bytes, static_cast<unsigned>(count)))
+            return report_table(*reader.port, address,
+                                "the memory that this port reads does not take the table's bytes by debug transport: "
+                                "give the memory, and what is in front of it, transport_dbg for writes; refused");
+    return true;
+}
+
+bool Pipeline::holds_table(const TableMemory& table, std::uint64_t address, const unsigned char* bytes,
+                           std::size_t count) {
+    for (const TableReader& reader : readers_)
+        if (reader.table == &table && !reader.port->holds(address, bytes, static_cast<unsigned>(count)))
+            return report_table(*reader.port, address,
+                                "the memory that this port reads no longer holds the table that was written to it: "
+                                "give each machine and table a memory, or addresses, of its own; changed");
+    return true;
+}
+
+void Pipeline::begin_frame() {
+    ++frames_begun_;
+    has_frames_ = true;
+    frame_drained_ = false;
+}
+
+void Pipeline::end_frame() {
+    --frames_begun_;
+    frame_ended_.notify(sc_core::SC_ZERO_TIME);
+}
+
 void Pipeline::see_whether_drained() {
-    if (idle())
-        drained_.notify();
+    const bool quiet = transport_ == Transport::blocking || clock.idle();
+    if (!quiet || !idle())
+        return;
+    for (const auto& watch : watches_)
+        watch->rest();
+    if (frames_begun_ > 0 || (has_frames_ && std::exchange(frame_drained_, true)))
+        return;
+    drained_.notify();
 }
 
 void Pipeline::wire(UnitFactory& factory) {

@@ -35,7 +35,7 @@ namespace tessera {
 ///                │                         normal map)         v
 ///                └── Triangle Queue <──────────── └─> Pass or Tessellate ──> Lighting ──> rasteriser
 ///
-/// External: get_triangle.from_host, lighting.to_rasteriser, and the memories' sockets for the host's preload.
+/// External: get_triangle.from_host, lighting.to_rasteriser; and write_table(), for the host.
 class Pipeline : public sc_core::sc_module {
     struct Units {
         std::unique_ptr<GetTriangle> get_triangle;
@@ -91,16 +91,32 @@ class Pipeline : public sc_core::sc_module {
     /// True if nothing is in flight.
     bool idle() const;
 
+    /// Writes bytes of a table at an address of its layout, by debug transport through every port that reads the table:
+    /// to wherever a UnitFactory has joined it. table: one of this machine's. SC_ERROR that names the port, and false,
+    /// if a memory does not take the bytes, or then reads as others.
+    bool write_table(const TableMemory& table, std::uint64_t address, const unsigned char* bytes, std::size_t count);
+    /// False, after an SC_ERROR that names the port, if one now reads other bytes of the table.
+    bool holds_table(const TableMemory& table, std::uint64_t address, const unsigned char* bytes, std::size_t count);
+    /// True if a port reads a table from a memory that is not this machine's, which others may write.
+    bool reads_tables_elsewhere() const { return tables_elsewhere_; }
     /// Call while idle when a table's content or columns have changed.
     void tables_changed();
 
-    /// Notified whenever nothing is left to do and nothing is in flight.
+    /// A source of triangles calls these before the first and after the last of a frame. Several may, also at the same
+    /// time.
+    void begin_frame();
+    void end_frame();
+    /// Notified once a frame: no source has triangles left, and nothing is in flight. If no source calls begin_frame():
+    /// whenever nothing is left to do and nothing is in flight, in functional mode after each base triangle.
     const sc_core::sc_event& drained() const { return drained_; }
 
     /// Every unit and memory, in the order of the figures.
     const std::vector<Unit*>& units() const { return units_; }
     /// The caches of the tables that have one.
     const std::vector<TableCache*>& caches() const { return caches_; }
+
+    /// Design::answer_cycles in simulated time.
+    const sc_core::sc_time& answer_limit() const { return answer_limit_; }
 
     Transport transport() const { return transport_; }
     bool conducted() const { return conducted_; }
@@ -120,6 +136,11 @@ class Pipeline : public sc_core::sc_module {
     datapath::Saturations saturations() const;
 
   private:
+    struct TableReader {
+        MemoryPort* port;
+        const TableMemory* table;
+    };
+
     static Units make(const UnitContext& context, UnitFactory& factory);
     void wire(UnitFactory& factory);
     void wire_triangles();
@@ -127,11 +148,22 @@ class Pipeline : public sc_core::sc_module {
     std::unique_ptr<TableCache> make_cache(const char* name, const datapath::TableLayout& layout,
                                            const MemoryTiming& timing, const StallParameters& stalls);
     std::unique_ptr<DisplacementMap> make_second_side(const datapath::Registers& registers, const Design& design);
+    void join(UnitFactory& factory, MemoryPort& port, TableMemory& table, TableCache* cache);
+    void see_where_ports_lead();
+    bool watch(MemoryPort& port);
     void attach();
     void see_whether_drained();
 
     sc_core::sc_event drained_{"drained"};
+    sc_core::sc_event frame_ended_{"frame_ended"};
+    unsigned frames_begun_ = 0;  // and not ended, by the sources
+    bool has_frames_ = false;
+    bool frame_drained_ = false;
+    std::vector<TableReader> readers_;
+    bool tables_elsewhere_ = false;
+    std::vector<std::unique_ptr<AnswerWatch>> watches_;
     const datapath::Registers& registers_;
+    const sc_core::sc_time answer_limit_;
     Transport transport_;
     bool conducted_;
     bool random_stalls_;

@@ -50,17 +50,16 @@ Device::Device(const sc_core::sc_module_name& name, const datapath::Registers& i
       pipeline_("machine", live_, design.machine, factory),
       streams_("streams", pipeline_.clock, design.machine, design.triangles_ahead, design.finished_triangles),
       file_(initial, design.largest_map),
-      reading_(bus, design.burst_bytes, design.machine.transport == Transport::blocking),
-      writing_(bus, design.burst_bytes, design.machine.transport == Transport::blocking),
+      reading_("reading", bus, design.burst_bytes, design.machine.transport == Transport::blocking,
+               pipeline_.answer_limit()),
+      writing_("writing", bus, design.burst_bytes, design.machine.transport == Transport::blocking,
+               pipeline_.answer_limit()),
       most_waiting_(std::max<std::uint64_t>(design.machine.queue.capacity, design.machine.queue.off_chip_triangles)) {
     registers.register_b_transport(this, &Device::b_transport);
     registers.register_transport_dbg(this, &Device::transport_dbg);
     streams_.to_get_triangle.bind(pipeline_.get_triangle.from_host);
     pipeline_.lighting.to_rasteriser.bind(streams_.from_lighting);
     pipeline_.pass_or_tessellate.decided.bind(*this);
-    displacement_map_.bind(pipeline_.displacement_map.host);
-    normal_map_.bind(pipeline_.normal_map.host);
-    summed_height_table_.bind(pipeline_.height_table.host);
     SC_HAS_PROCESS(Device);
     SC_THREAD(run_frames);
     SC_THREAD(write_records);
@@ -80,6 +79,7 @@ void Device::start(const sc_core::sc_time& delay) {
     }
     live_ = machine;
     pipeline_.tables_changed();
+    pipeline_.begin_frame();
     finished_before_ = pipeline_.pass_or_tessellate.counts().finished;
     triangles_sent_ = write_index_ = read_index_ = 0;
     ring_place_ = 0;
@@ -96,7 +96,9 @@ void Device::run_frames() {
         if (fetch_tables())
             send_triangles();
         reading_.synchronise();
+        pipeline_.end_frame();
         wait_until_empty();
+        check_tables();
         end_frame();
     }
 }
@@ -104,19 +106,22 @@ void Device::run_frames() {
 /// Returns false if the frame must stop.
 bool Device::fetch_tables() {
     const datapath::Formats& f = live_.formats;
-    return fetch(0, displacement_map_, offset::displacement_map_address, live_.displacement_map, f.displacement.bits) &&
-           fetch(1, normal_map_, offset::normal_map_address, live_.normal_map, 3 * f.normal.bits) &&
-           fetch(2, summed_height_table_, offset::summed_height_table_address, live_.height_table,
+    return fetch(0, pipeline_.displacement_map, offset::displacement_map_address, live_.displacement_map,
+                 f.displacement.bits) &&
+           fetch(1, pipeline_.normal_map, offset::normal_map_address, live_.normal_map, 3 * f.normal.bits) &&
+           fetch(2, pipeline_.height_table, offset::summed_height_table_address, live_.height_table,
                  datapath::height_entry_bits(f));
 }
 
-/// Copies burst by burst into the table memory by its debug transport. The memory keeps only `bits` bits of an entry.
-bool Device::fetch(unsigned number, TableSocket& table, std::uint32_t source, const datapath::TableLayout& layout,
+/// Copies burst by burst into the table memory by debug transport, only `bits` bits of an entry.
+bool Device::fetch(unsigned number, const TableMemory& table, std::uint32_t source, const datapath::TableLayout& layout,
                    int bits) {
     if ((file_.value(offset::fetch) >> number & 1) == 0)
         return !stopped_;
     const std::uint64_t mask = (std::uint64_t{1} << bits) - 1;
     std::vector<unsigned char> data(design_.burst_bytes);
+    Fetched& fetched = fetched_[number];
+    fetched = {&table, layout.base, {}};
     std::uint64_t length = 0;
     for (std::uint64_t done = 0; done < layout.bytes() && !stopped_; done += length) {
         const std::uint64_t address = file_.value(source) + done;
@@ -127,15 +132,22 @@ bool Device::fetch(unsigned number, TableSocket& table, std::uint32_t source, co
         }
         for (std::uint64_t k = 0; k < length; ++k)
             data[k] &= static_cast<unsigned char>(mask >> 8 * ((done + k) % layout.entry_bytes));
-        tlm::tlm_generic_payload entries;
-        entries.set_command(tlm::TLM_WRITE_COMMAND);
-        entries.set_address(layout.base + done);
-        entries.set_data_ptr(data.data());
-        entries.set_data_length(static_cast<unsigned>(length));
-        entries.set_streaming_width(static_cast<unsigned>(length));
-        table->transport_dbg(entries);
+        if (!pipeline_.write_table(table, layout.base + done, data.data(), length)) {
+            stop(DeviceError::table_memory, address);
+            return false;
+        }
+        if (pipeline_.reads_tables_elsewhere())
+            fetched.bytes.insert(fetched.bytes.end(), data.begin(), data.begin() + static_cast<std::ptrdiff_t>(length));
     }
     return !stopped_;
+}
+
+/// A memory that is not the machine's may have been written by another device during the frame, or since the fetch.
+void Device::check_tables() {
+    for (const Fetched& fetched : fetched_)
+        if (!fetched.bytes.empty() &&
+            !pipeline_.holds_table(*fetched.table, fetched.base, fetched.bytes.data(), fetched.bytes.size()))
+            stop(DeviceError::table_memory, 0);
 }
 
 void Device::send_triangles() {
@@ -173,6 +185,8 @@ void Device::end_frame() {
         reset_registers();
         return;
     }
+    reading_.rest();
+    writing_.rest();
     const bool done = failure_.error == DeviceError::none;
     status_ = done ? status_done : status_error;
     raise(done ? interrupt_done : interrupt_error);

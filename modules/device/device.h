@@ -1,9 +1,11 @@
 #pragma once
 #include <tlm_utils/simple_initiator_socket.h>
 #include <tlm_utils/simple_target_socket.h>
+#include <array>
 #include <cstdint>
 #include <systemc>
 #include <tlm>
+#include <vector>
 
 #include "modules/device/dma_channel.h"
 #include "modules/device/frame_streams.h"
@@ -26,16 +28,18 @@ struct DeviceDesign {
 ///
 /// In:        `registers`: TLM-2.0 base protocol, loosely timed (b_transport) and approximately timed (nb_transport).
 ///            Words of 32 bits, little endian, at the offsets of REGISTERS.md. An access is of one or more whole words,
-///            aligned; without byte enables. It takes effect as a whole, in ascending order, or not at all:
-///            TLM_BURST_ERROR: not whole aligned words, or a streaming width below the length. TLM_BYTE_ENABLE_ERROR.
-///            TLM_ADDRESS_ERROR: no register there. TLM_COMMAND_ERROR: a write to a read-only register, or neither read
-///            nor write. TLM_GENERIC_ERROR: a write refused at present (a frame is under way, reset is held, or the
-///            read index would pass the write index). transport_dbg: reads, and writes of plain registers, without side
+///            aligned. It takes effect as a whole, in ascending order, or not at all:
+///            TLM_BURST_ERROR: not whole aligned words, or a streaming width, other than 0, below the length.
+///            TLM_BYTE_ENABLE_ERROR: a byte is not enabled. TLM_ADDRESS_ERROR: no register there. TLM_COMMAND_ERROR: a
+///            write to a read-only register. TLM_GENERIC_ERROR: no data pointer, or a write refused at present (a frame
+///            is under way, reset is held, or the read index would pass the write index). TLM_IGNORE_COMMAND: does
+///            nothing, anywhere, and succeeds. transport_dbg: reads, and writes of plain registers, without side
 ///            effects. DMI: refused. `reset`: optional; while high the device is in reset.
 /// Out:       `bus`: base protocol, b_transport with annotated delay; two transfers may be under way at a time, one
 ///            reading and one writing. `interrupt`: optional; level.
-/// Frame:     start validates all registers, copies the tables selected by `fetch` into the table memories (entry bits
-///            beyond the format are dropped), sends the base triangles to the machine, and writes each finished
+/// Frame:     start validates all registers, copies the tables selected by `fetch` to the memories that the units read
+///            (Pipeline::write_table; entry bits beyond the format are dropped), sends the base triangles to the machine,
+///            and writes each finished
 ///            triangle that is not culled to the ring (records.h). done and interrupt follow when all are written.
 ///            While the ring is full (write index - read index = size) the machine is held back. Each frame resets
 ///            indices and counters.
@@ -44,9 +48,10 @@ struct DeviceDesign {
 /// Reset:     stops a frame in the same way. The machine's units have no reset wires: the triangles in the machine go
 ///            through it, with a Generation Test that splits no further edge. busy and resetting stay set until it is
 ///            empty; then all registers have their reset values. The tables keep their contents.
-/// Timing:    an access takes `register_cycles` for each word. While a frame is under way an access first waits for the
-///            initiator's delay to pass. DMA: dma_channel.h. Functional mode obeys the global quantum; timed mode waits
-///            for each burst's delay to pass.
+/// Timing:    an access takes `register_cycles` for each word, a refused one for one word. While a frame is under way an
+///            access first waits for the initiator's delay to pass. DMA: dma_channel.h. Functional mode obeys the global
+///            quantum; timed mode waits for each burst's delay to pass. A bus, or a table memory of a UnitFactory, that
+///            does not answer for Design::answer_cycles is an SC_ERROR.
 /// Capacity:  `triangles_ahead` and `finished_triangles`. Triangles that wait, or can be added by those under way: as
 ///            many as the Triangle Queue or its off-chip memory holds, whichever holds more (unbounded queue: as many
 ///            as off-chip memory). Beyond that the frame is stopped.
@@ -67,7 +72,6 @@ class Device : public sc_core::sc_module, private tlm::tlm_analysis_if<datapath:
     bool busy() const { return (status_ & status_busy) != 0; }
 
   private:
-    using TableSocket = tlm_utils::simple_initiator_socket<Device>;
     struct Failure {
         DeviceError error = DeviceError::none;
         std::uint64_t address = 0;
@@ -87,8 +91,9 @@ class Device : public sc_core::sc_module, private tlm::tlm_analysis_if<datapath:
     // the frame
     void run_frames();
     bool fetch_tables();
-    bool fetch(unsigned number, TableSocket& table, std::uint32_t source, const datapath::TableLayout& layout,
+    bool fetch(unsigned number, const TableMemory& table, std::uint32_t source, const datapath::TableLayout& layout,
                int bits);
+    void check_tables();
     void send_triangles();
     void write_records();
     void write_record(const FrameStreams::Finished& finished);
@@ -110,9 +115,6 @@ class Device : public sc_core::sc_module, private tlm::tlm_analysis_if<datapath:
     Pipeline pipeline_;
     FrameStreams streams_;
     RegisterFile file_;
-    TableSocket displacement_map_{"displacement_map"};
-    TableSocket normal_map_{"normal_map"};
-    TableSocket summed_height_table_{"summed_height_table"};
     DmaChannel reading_;
     DmaChannel writing_;
 
@@ -127,6 +129,12 @@ class Device : public sc_core::sc_module, private tlm::tlm_analysis_if<datapath:
     std::uint32_t read_index_ = 0;
     std::uint64_t ring_place_ = 0;  // of the next record
     std::uint64_t most_waiting_;    // triangles in the machine's queue
+    struct Fetched {
+        const TableMemory* table = nullptr;
+        std::uint64_t base = 0;
+        std::vector<unsigned char> bytes;
+    };
+    std::array<Fetched, 3> fetched_;  // the tables, if the machine reads any from a memory that is not its own
 
     sc_core::sc_event started_{"started"};
     sc_core::sc_event ring_read_{"ring_read"};

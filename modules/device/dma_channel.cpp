@@ -27,7 +27,9 @@ bool DmaChannel::transfer(tlm::tlm_command command, std::uint64_t address, unsig
         burst.set_data_length(static_cast<unsigned>(length));
         burst.set_streaming_width(static_cast<unsigned>(length));
         sc_core::sc_time delay = local_time();
+        const std::uint64_t watched = watch_.begin(command, address, delay);
         bus_->b_transport(burst, delay);
+        watch_.end(watched);
         set_local_time(delay);
         if (!burst.is_response_ok()) {
             failed_at_ = address;

@@ -6,6 +6,8 @@
 #include <systemc>
 #include <tlm>
 
+#include "modules/sockets/answer_watch.h"
+
 namespace tessera {
 
 /// A thread's transfers over the device's bus master socket.
@@ -17,9 +19,9 @@ class DmaChannel {
   public:
     using Socket = tlm::tlm_base_initiator_socket<32>;
 
-    /// burst_bytes: a power of two.
-    DmaChannel(Socket& bus, unsigned burst_bytes, bool loosely_timed)
-        : bus_(bus), burst_bytes_(burst_bytes), loosely_timed_(loosely_timed) {}
+    /// burst_bytes: a power of two. limit: for an answer (AnswerWatch).
+    DmaChannel(const char* name, Socket& bus, unsigned burst_bytes, bool loosely_timed, const sc_core::sc_time& limit)
+        : watch_(name, bus.name(), limit), bus_(bus), burst_bytes_(burst_bytes), loosely_timed_(loosely_timed) {}
 
     /// Returns false after a response other than OK to the burst at failed_at(); no further burst is sent.
     bool read(std::uint64_t address, unsigned char* to, std::uint64_t bytes) {
@@ -35,10 +37,13 @@ class DmaChannel {
     void set_local_time(const sc_core::sc_time& offset);
     /// Waits until simulated time has reached the thread's local time. Call before any wait for an event.
     void synchronise();
+    /// Call while no transfer is under way.
+    void rest() { watch_.rest(); }
 
   private:
     bool transfer(tlm::tlm_command command, std::uint64_t address, unsigned char* data, std::uint64_t bytes);
 
+    AnswerWatch watch_;
     Socket& bus_;
     unsigned burst_bytes_;
     bool loosely_timed_;

@@ -91,6 +91,7 @@ enum class DeviceError : std::uint8_t {
     ring_write,
     queue_full,
     machine_stopped,
+    table_memory,
 };
 
 struct ErrorMeaning {
@@ -98,7 +99,7 @@ struct ErrorMeaning {
     const char* name;
     const char* meaning;
 };
-inline constexpr std::array<ErrorMeaning, 11> error_meanings{{
+inline constexpr std::array<ErrorMeaning, 12> error_meanings{{
     {DeviceError::none, "none", "no error"},
     {DeviceError::bad_value, "bad_value", "refused: an invalid register value; the register's offset"},
     {DeviceError::bad_map_size, "bad_map_size",
@@ -115,6 +116,9 @@ inline constexpr std::array<ErrorMeaning, 11> error_meanings{{
      "stopped: the waiting triangles would not fit the Triangle Queue's memory; 0"},
     {DeviceError::machine_stopped, "machine_stopped",
      "stopped permanently: the machine's clock has halted, and a reset has no effect; 0"},
+    {DeviceError::table_memory, "table_memory",
+     "stopped: a memory outside the machine refused a table, or was changed by another; the bus address of the refused "
+     "data, or 0"},
 }};
 
 /// Columns and rows of the largest map that the table memories hold.

@@ -1,6 +1,7 @@
 #include "modules/memories/base_protocol_bridge.h"
 
 #include <algorithm>
+#include <sstream>
 
 #include "modules/sockets/stream.h"
 
@@ -172,14 +173,29 @@ bool BaseProtocolBridge::get_direct_mem_ptr(int, MemoryRequest& request, tlm::tl
     return to_memory->get_direct_mem_ptr(payload, dmi);
 }
 
+/// The memory may move fewer bytes than it is asked for.
 unsigned BaseProtocolBridge::transport_dbg(int, MemoryRequest& request) {
     for (unsigned k = 0; k < request.count; ++k) {
-        tlm::tlm_generic_payload payload;
-        fill(payload, request, k);
-        if (to_memory->transport_dbg(payload) != request.entry_bytes)
-            return 0;
+        for (unsigned moved = 0, now = 0; moved < request.entry_bytes; moved += now) {
+            tlm::tlm_generic_payload payload;
+            fill(payload, request, k);
+            payload.set_address(request.address[k] + moved);
+            payload.set_data_ptr(request.entry(k) + moved);
+            payload.set_data_length(request.entry_bytes - moved);
+            payload.set_streaming_width(request.entry_bytes - moved);
+            now = to_memory->transport_dbg(payload);
+            if (now == 0 || now > request.entry_bytes - moved)
+                return 0;
+        }
     }
     return request.bytes();
+}
+
+std::string BaseProtocolBridge::describe_contents() const {
+    std::ostringstream entry;
+    if (on_offer_ != nullptr)
+        entry << to_memory.name() << " waits for END_REQ of address 0x" << std::hex << on_offer_->payload.get_address();
+    return listed(MemoryServer::describe_contents(), entry.str());
 }
 
 }  // namespace tessera

@@ -21,6 +21,7 @@ namespace tessera {
 ///            which END_RESP is sent at once) or later; answers in any order. Requests are answered in
 ///            order. A response other than OK becomes the request's.
 /// Functional mode: b_transport for each entry; DMI and debug transport are passed on.
+/// Limit:     Design::answer_cycles, of the ports joined to it.
 /// Construct it before the units that use it: it attaches itself to the clock.
 class BaseProtocolBridge : public MemoryServer, public tlm::tlm_mm_interface {
   public:
@@ -33,6 +34,7 @@ class BaseProtocolBridge : public MemoryServer, public tlm::tlm_mm_interface {
 
     /// Entries sent, one per cycle.
     std::uint64_t occupied_cycles() const override { return entries_sent_; }
+    std::string describe_contents() const override;
 
   private:
     struct Entry;  // under way

@@ -32,6 +32,8 @@ class MemoryServer : public Unit {
     tlm_utils::passthrough_target_socket_optional<MemoryServer> host{"host"};
 
     std::uint64_t cycles_held_up() const { return cycles_held_up_; }
+    /// No unit's port leads here: what the host writes is an SC_ERROR from now on.
+    void has_no_reader() { no_reader_ = true; }
     std::string describe_contents() const override;
 
   protected:
@@ -78,6 +80,7 @@ class MemoryServer : public Unit {
     std::vector<PendingItem<MemoryRequest>> held_back_;  // by port, for ports that have made requests
     std::size_t turn_ = 0;                               // the next port, round-robin
     std::size_t waiting_ = 0;                            // number of requests held back
+    bool no_reader_ = false;
     Ring<Served> queue_;
     Ring<Served> answers_;  // due; grows to the number of requests that the ports have under way
     std::uint64_t held_up_since_ = 0;

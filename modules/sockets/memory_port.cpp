@@ -35,7 +35,10 @@ void MemoryPort::read_by_transactions(const std::uint64_t* addresses, unsigned c
         ++reads_;
         unsigned char data[sizeof(std::uint64_t)] = {};
         MemoryRequest request{tlm::TLM_READ_COMMAND, 1, entry_bytes_, {addresses[k]}, data};
+        const std::uint64_t watched = watch_ == nullptr ? 0 : watch_->begin(request.command, addresses[k], delay);
         socket->b_transport(request, delay);
+        if (watch_ != nullptr)
+            watch_->end(watched);
         check_response(request);
         if (use_direct_memory_ && request.dmi_allowed && direct_bytes_ == 0)
             ask_for_direct_memory(request);
@@ -86,6 +89,8 @@ void MemoryPort::offer(tlm::tlm_command command, const std::uint64_t* addresses,
     std::copy_n(addresses, count, request.address.begin());
     request.data = slot.data.data();
     request.response = tlm::TLM_INCOMPLETE_RESPONSE;
+    if (watch_ != nullptr)
+        slot.watched = watch_->begin(command, addresses[0], sc_core::SC_ZERO_TIME);
     tlm::tlm_phase phase = tlm::BEGIN_REQ;
     sc_core::sc_time delay = sc_core::SC_ZERO_TIME;
     on_offer_ = true;
@@ -116,8 +121,26 @@ tlm::tlm_sync_enum MemoryPort::nb_transport_bw(MemoryRequest& request, tlm::tlm_
     if (&slots_.at(answered_).request != &request || !taken)
         stream_protocol_error(socket.name(), "BEGIN_RESP out of order or before END_REQ", clock_);
     check_response(request);
+    if (watch_ != nullptr)
+        watch_->end(slots_.at(answered_).watched);
     ++answered_;
     return tlm::TLM_COMPLETED;
+}
+
+bool MemoryPort::load(std::uint64_t address, const unsigned char* bytes, unsigned count) {
+    std::vector<unsigned char> data(count);
+    MemoryRequest request{tlm::TLM_READ_COMMAND, 1, count, {address}, data.data()};
+    if (socket->transport_dbg(request) == count && std::equal(data.begin(), data.end(), bytes))
+        return true;
+    std::copy_n(bytes, count, data.begin());
+    request.command = tlm::TLM_WRITE_COMMAND;
+    return socket->transport_dbg(request) == count && holds(address, bytes, count);
+}
+
+bool MemoryPort::holds(std::uint64_t address, const unsigned char* bytes, unsigned count) {
+    std::vector<unsigned char> data(count);
+    MemoryRequest request{tlm::TLM_READ_COMMAND, 1, count, {address}, data.data()};
+    return socket->transport_dbg(request) != count || std::equal(data.begin(), data.end(), bytes);
 }
 
 }  // namespace tessera

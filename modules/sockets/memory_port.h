@@ -8,6 +8,7 @@
 #include <tlm>
 #include <vector>
 
+#include "modules/sockets/answer_watch.h"
 #include "modules/sockets/memory_request.h"
 #include "modules/timing/cycle_scheduler.h"
 #include "modules/timing/ring.h"
@@ -20,6 +21,7 @@ namespace tessera {
 /// time and counts are the same.
 /// Timed mode: requests (memory_request.h). One on offer at a time, several under way, answered in order. The unit is
 /// called when a delayed request is accepted and when an answer arrives.
+/// Host: load() and holds(), by debug transport, in both modes.
 /// Errors: responses other than OK, and violations of the protocol, are SC_ERRORs that name the port.
 class MemoryPort {
   public:
@@ -96,6 +98,12 @@ class MemoryPort {
         --answered_;
     }
 
+    /// Writes `count` bytes to the memory, wherever the port is joined. Returns false if the memory does not take them,
+    /// or then reads as others. A memory that cannot be read is believed.
+    bool load(std::uint64_t address, const unsigned char* bytes, unsigned count);
+    /// False if the memory can be read and holds other bytes.
+    bool holds(std::uint64_t address, const unsigned char* bytes, unsigned count);
+
     /// Requests made in timed mode; entries read in either mode.
     std::uint64_t requests() const { return requests_; }
     std::uint64_t reads() const { return reads_; }
@@ -105,20 +113,28 @@ class MemoryPort {
     template <class Memory>
     void bind(Memory& memory) {
         bind(memory, memory);
+        interposed_ = false;
     }
     /// Binds it through a module in front of the memory.
     template <class Interposer>
     void bind(Interposer& before, const sc_core::sc_object& memory) {
         socket.bind(before.socket);
         memory_ = &memory;
+        interposed_ = true;
     }
     /// The memory that the unit waits for.
     const sc_core::sc_object* memory() const { return memory_; }
+    /// There is something else between the port and that memory.
+    bool interposed() const { return interposed_; }
+
+    /// Every request from now on is watched; `watch` must outlive the last.
+    void watched_by(AnswerWatch& watch) { watch_ = &watch; }
 
   private:
     struct Slot {
         MemoryRequest request;
         std::vector<unsigned char> data;
+        std::uint64_t watched = 0;
     };
 
     void read_by_transactions(const std::uint64_t* addresses, unsigned count, std::uint64_t* entries,
@@ -147,6 +163,8 @@ class MemoryPort {
     std::size_t answered_ = 0;  // number of these answered: the oldest ones
     bool on_offer_ = false;     // the newest of these is not accepted yet
     const sc_core::sc_object* memory_ = nullptr;
+    bool interposed_ = true;
+    AnswerWatch* watch_ = nullptr;
 };
 
 }  // namespace tessera

@@ -34,6 +34,9 @@ struct Design {
     /// In functional mode a Conductor (modules/conductor.h) sends the triangles of the host and of the queue.
     bool conducted = false;
     bool direct_memory = true;  ///< units read memories through DMI in functional mode
+    /// Cycles for which a memory that a UnitFactory has joined, or the device's bus, may leave a request unanswered
+    /// (sockets/answer_watch.h); 0: no limit.
+    unsigned answer_cycles = 1'000'000;
 #ifdef NDEBUG
     bool packed_streams = false;
 #else

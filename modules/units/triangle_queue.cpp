@@ -1,6 +1,7 @@
 #include "modules/units/triangle_queue.h"
 
 #include <algorithm>
+#include <sstream>
 
 #include "modules/datapath/pack_triangle.h"
 #include "modules/stage/signals.h"
@@ -107,9 +108,35 @@ void TriangleQueue::spill(const datapath::Triangle& triangle) {
                         "a spilled triangle does not fit its format (generations beyond generation_bits?)");
     if (off_chip_ == 0)
         off_chip_head_ = 0;
+    if (checks_off_chip_memory_) {
+        const std::uint64_t place = (off_chip_head_ + off_chip_) % design_.off_chip_triangles;
+        checksums_.resize(std::max<std::size_t>(checksums_.size(), place + 1));
+        checksums_[place] = checksum(off_chip_memory.entry_to_write());
+    }
     off_chip_memory.write(place_address(off_chip_head_ + off_chip_));
     ++off_chip_;
     ++spilled_;
+}
+
+/// FNV-1a.
+std::uint32_t TriangleQueue::checksum(const unsigned char* record) const {
+    std::uint32_t sum = 2166136261;
+    for (std::size_t k = 0; k < record_bytes_; ++k)
+        sum = (sum ^ record[k]) * 16777619;
+    return sum;
+}
+
+void TriangleQueue::check_returned() {
+    const std::uint64_t place = returning_.front();
+    returning_.pop_front();
+    if (checksum(off_chip_memory.answer()) == checksums_[place])
+        return;
+    std::ostringstream message;
+    message << off_chip_memory.socket.name()
+            << ": the memory that this port reads no longer holds the triangle that was "
+            << "written to it: give each machine a memory, or addresses, of its own; changed at address 0x" << std::hex
+            << place_address(place);
+    SC_REPORT_ERROR("tessera/triangle_queue", message.str().c_str());
 }
 
 /// Returns false if there is no place for the triangle at present.
@@ -148,6 +175,8 @@ bool TriangleQueue::put(const datapath::Triangle& triangle) {
 void TriangleQueue::take_back() {
     while (off_chip_memory.answered()) {
         if (off_chip_memory.answer_is_read()) {
+            if (checks_off_chip_memory_)
+                check_returned();
             const datapath::Triangle triangle = datapath::unpack_triangle(off_chip_memory.answer(), registers_.formats);
             if (design_.order == TriangleOrder::fifo)
                 store_.push(triangle);
@@ -166,7 +195,10 @@ void TriangleQueue::refill() {
     while (off_chip_ > 0 && off_chip_memory.may_request() &&
            (fifo ? on_chip_room() : store_.size() + refills_ <= design_.capacity / 2)) {
         --off_chip_;
-        off_chip_memory.request(place_address(fifo ? off_chip_head_++ : off_chip_head_ + off_chip_));
+        const std::uint64_t place = fifo ? off_chip_head_++ : off_chip_head_ + off_chip_;
+        if (checks_off_chip_memory_)
+            returning_.push_back(place % design_.off_chip_triangles);
+        off_chip_memory.request(place_address(place));
         ++refills_;
     }
 }

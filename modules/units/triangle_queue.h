@@ -2,8 +2,10 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <systemc>
 #include <utility>
+#include <vector>
 
 #include "modules/sockets/items.h"
 #include "modules/sockets/memory_port.h"
@@ -55,6 +57,8 @@ class TriangleQueue : public Unit {
     /// With QueueOverflow::error: there was no place for a triangle.
     bool overflowed() const { return overflowed_; }
 
+    /// Off-chip memory is not the machine's: a triangle that comes back changed is an SC_ERROR.
+    void check_off_chip_memory() { checks_off_chip_memory_ = true; }
     /// A triangle had to be spilled while off-chip memory was full.
     bool off_chip_memory_full() const { return off_chip_memory_full_; }
 
@@ -89,6 +93,8 @@ class TriangleQueue : public Unit {
     bool put(const datapath::Triangle& triangle);
     void spill(const datapath::Triangle& triangle);
     void level_changed(std::uint64_t cycle);
+    std::uint32_t checksum(const unsigned char* record) const;
+    void check_returned();
     bool on_chip_room() const { return design_.capacity == 0 || store_.size() + refills_ < design_.capacity; }
     std::uint64_t place_address(std::uint64_t place) const {
         return place % design_.off_chip_triangles * record_bytes_;
@@ -107,6 +113,9 @@ class TriangleQueue : public Unit {
     std::size_t refills_ = 0;          // triangles on their way back
     std::uint64_t spilled_ = 0;
     std::uint64_t refilled_ = 0;
+    bool checks_off_chip_memory_ = false;
+    std::vector<std::uint32_t> checksums_;  // of the triangles off chip, by place
+    std::deque<std::uint64_t> returning_;   // places of those on their way back
     bool overflowed_ = false;
     bool off_chip_memory_full_ = false;
     LevelHistory history_;

@@ -141,8 +141,9 @@ enum tessera_error {
     TESSERA_ERROR_RING_WRITE = 8,  /* stopped: bus error on a write to the ring; the address */
     TESSERA_ERROR_QUEUE_FULL = 9,  /* stopped: the waiting triangles would not fit the Triangle Queue's memory; 0 */
     TESSERA_ERROR_MACHINE_STOPPED = 10,  /* stopped permanently: the machine's clock has halted, and a reset has no effect; 0 */
+    TESSERA_ERROR_TABLE_MEMORY = 11,  /* stopped: a memory outside the machine refused a table, or was changed by another; the bus address of the refused data, or 0 */
 };
-#define TESSERA_ERRORS 11
+#define TESSERA_ERRORS 12
 #define TESSERA_ERROR_TEXTS \
     "no error", \
     "refused: an invalid register value; the register's offset", \
@@ -154,7 +155,8 @@ enum tessera_error {
     "stopped: a value of a base triangle does not fit its format; the record's address", \
     "stopped: bus error on a write to the ring; the address", \
     "stopped: the waiting triangles would not fit the Triangle Queue's memory; 0", \
-    "stopped permanently: the machine's clock has halted, and a reset has no effect; 0"
+    "stopped permanently: the machine's clock has halted, and a reset has no effect; 0", \
+    "stopped: a memory outside the machine refused a table, or was changed by another; the bus address of the refused data, or 0"
 
 /* Records in bus memory: little-endian words. */
 struct tessera_base_vertex {

@@ -64,41 +64,64 @@ bool any_contains(const Texts& texts, const std::string& unit, const std::string
 
 /// Records the state whenever Pipeline::drained() is notified, with base triangles that become 16 each.
 struct DrainedWatch : sc_core::sc_module {
-    explicit DrainedWatch(Simulation& simulation) : sc_module("watch"), simulation_(simulation) {
+    DrainedWatch(const std::string& name, HostedMachine& machine) : sc_module(name.c_str()), machine_(machine) {
         SC_HAS_PROCESS(DrainedWatch);
         SC_METHOD(note);
         dont_initialize();
-        sensitive << simulation.pipeline.drained();
+        sensitive << machine.pipeline.drained();
     }
     unsigned notified = 0;
-    bool always_empty = true;       ///< all that the host had sent was lit
-    std::uint64_t sent_before = 0;  ///< base triangles of earlier frames
-    std::uint64_t lit = 0;          ///< at the last notification
+    bool always_whole = true;  ///< as many frames as notifications were lit, and nothing was in flight
 
   private:
     void note() {
         ++notified;
-        lit = simulation_.rasteriser.triangles();
-        always_empty =
-            always_empty && simulation_.pipeline.idle() && lit == 16 * (sent_before + simulation_.host.sent());
+        always_whole = always_whole && machine_.drained() &&
+                       machine_.rasteriser.triangles() == 16 * machine_.host.total() * notified;
     }
-    Simulation& simulation_;
+    HostedMachine& machine_;
 };
 
-/// Two frames of 8 base triangles. Returns the number of notifications.
-unsigned expect_drained_when_empty(const Job& job) {
-    const MachineSetup setup = setup_of(job);
-    Simulation simulation(setup, 1'000'000);
-    DrainedWatch watch(simulation);
-    REQUIRE(simulation.run().empty());
-    CHECK(watch.lit == 8 * 16);
-    watch.sent_before = 8;
-    simulation.host.send_again();
-    REQUIRE(simulation.run().empty());
-    CHECK(watch.lit == 2 * 8 * 16);
-    CHECK(watch.always_empty);
-    return watch.notified;
-}
+struct Drained {
+    std::string name;
+    std::string settings;
+    bool scheduled = false;
+    unsigned machines = 1;
+};
+
+const CaseTable<Drained> drained(
+    "drained: notified once for each frame, when all of it is lit: ",
+    {
+        {"timed", "mode=timed"},
+        {"timed, by a schedule", "mode=timed", true},
+        {"timed, by a schedule, three Tessellation Tests units", "mode=timed hardware.tests_units=3", true},
+        {"timed, random stalls", "mode=timed timing.stalls_seed=3 timing.stalls_per_mille=300 timing.stalls_longest=9"},
+        {"timed, modern design", "mode=timed hardware.design=modern"},
+        {"timed, a queue that spills", "mode=timed hardware.queue_capacity=4"},
+        {"timed, two machines", "mode=timed", false, 2},
+        {"functional", "mode=functional"},
+        {"functional, modern design", "mode=functional hardware.design=modern"},
+        {"functional, watermark 8", "mode=functional hardware.queue_watermark=8"},
+        {"functional, three machines", "mode=functional", false, 3},
+    },
+    [](const Drained& row) {
+        MachineSetup setup = setup_of(with_settings(full_split_job(2, 2), row.settings));
+        setup.scheduled = row.scheduled;
+        setup.machines = row.machines;
+        Simulation simulation(setup, 1'000'000);
+        std::vector<std::unique_ptr<DrainedWatch>> watches;
+        for (std::size_t k = 0; k < row.machines; ++k)
+            watches.push_back(std::make_unique<DrainedWatch>("watch_" + std::to_string(k), *simulation.machines[k]));
+        for (unsigned frame = 1; frame <= 3; ++frame) {
+            REQUIRE(simulation.run().empty());
+            for (const auto& watch : watches) {
+                CHECK(watch->notified == frame);
+                CHECK(watch->always_whole);
+            }
+            for (const auto& machine : simulation.machines)
+                machine->host.send_again();
+        }
+    });
 
 struct Row {
     std::string name;
@@ -171,24 +194,13 @@ const CaseTable stopped(
 
 }  // namespace
 
-TEST_CASE("drained: in timed mode, notified once per frame, when the machine is empty") {
-    CHECK(expect_drained_when_empty(full_split_job(2, 2)) == 2);
-}
-
-// The host may wait between two base triangles while the machine is empty.
-TEST_CASE("drained: in functional mode, notified when the machine is empty") {
-    Job job = full_split_job(2, 2);
-    job.mode = Mode::functional;
-    CHECK(expect_drained_when_empty(job) >= 2);
-}
-
 TEST_CASE("drained: not notified in a deadlock") {
     Job job = timed_job();
     job.hardware.queue_capacity = 8;
     job.hardware.queue_overflow = Overflow::stall;
     const MachineSetup setup = setup_of(job);
     Simulation simulation(setup, 1'000'000);
-    DrainedWatch watch(simulation);
+    DrainedWatch watch("watch", *simulation.machines[0]);
     CHECK_THAT(simulation.run(), Catch::StartsWith("deadlock: "));
     CHECK(watch.notified == 0);
 }

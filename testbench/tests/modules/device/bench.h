@@ -74,12 +74,13 @@ struct Bench {
     std::uint64_t next = memory_base + 4;
     const bool direct;  ///< the processor is joined to the one device's registers
 
-    /// wires: reset and interrupt are connected; they are optional.
+    /// wires: reset and interrupt are connected; they are optional. units: of each device; none: the machine's own.
     Bench(const std::vector<datapath::Registers>& initial, const DeviceDesign& design, bool its_direct = false,
-          bool wires = true)
+          bool wires = true, const std::vector<UnitFactory*>& units = {})
         : router("router", initial.size()), direct(its_direct) {
         for (std::size_t k = 0; k < initial.size(); ++k) {
-            devices.push_back(std::make_unique<Device>(("device_" + std::to_string(k)).c_str(), initial[k], design));
+            devices.push_back(std::make_unique<Device>(("device_" + std::to_string(k)).c_str(), initial[k], design,
+                                                       units.empty() ? nullptr : units[k]));
             interrupts.push_back(
                 std::make_unique<sc_core::sc_signal<bool>>(("interrupt_" + std::to_string(k)).c_str()));
             devices[k]->bus.bind(router.from);
@@ -170,6 +171,17 @@ inline void set_places(tessera_driver& driver, const FramePlaces& places) {
 inline void set_frame(tessera_driver& driver, const MachineSetup& setup, const FramePlaces& places) {
     set_machine(driver, setup.registers);
     set_places(driver, places);
+}
+
+/// Requires that registers have their reset values.
+inline void expect_reset(tessera_driver& driver, const datapath::Registers& initial) {
+    for (const DeviceRegister& r : register_map(initial, {64, 64})) {
+        INFO(r.name);
+        std::int64_t value = 0;
+        REQUIRE(tessera_get(&driver, number_of(r.offset), &value) == TESSERA_OK);
+        const std::uint64_t mask = r.bits == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << r.bits) - 1;
+        CHECK((static_cast<std::uint64_t>(value) & mask) == r.reset);
+    }
 }
 
 inline void pop_all(tessera_driver& driver, LitKeys& keys) {

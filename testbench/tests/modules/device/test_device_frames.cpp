@@ -94,17 +94,6 @@ const CaseTable<BenchMode> without_fetch{
         CHECK(reads_again + 100 < reads);
     }};
 
-/// Requires that registers have their reset values.
-void expect_reset(tessera_driver& driver, const datapath::Registers& initial) {
-    for (const DeviceRegister& r : register_map(initial, {64, 64})) {
-        INFO(r.name);
-        std::int64_t value = 0;
-        REQUIRE(tessera_get(&driver, number_of(r.offset), &value) == TESSERA_OK);
-        const std::uint64_t mask = r.bits == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << r.bits) - 1;
-        CHECK((static_cast<std::uint64_t>(value) & mask) == r.reset);
-    }
-}
-
 const CaseTable<BenchMode> resets{"after a reset at any moment of a frame, the next frame is correct: ",
                                   {functional,
                                    timed,

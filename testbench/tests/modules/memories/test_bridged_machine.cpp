@@ -1,66 +1,27 @@
 #include <catch2/catch.hpp>
-#include <functional>
-#include <map>
 #include <memory>
+#include <sstream>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "modules/datapath/pack_triangle.h"
-#include "modules/memories/base_protocol_bridge.h"
 #include "testbench/tests/modules/memories/base_protocol_memories.h"
+#include "testbench/tests/modules/memories/bridged_units.h"
 #include "testbench/tests/support/bare_mesh.h"
+#include "testbench/tests/support/case_table.h"
 #include "testbench/tests/support/job_results.h"
 #include "testbench/tests/support/job_settings.h"
 #include "testbench/tests/support/timed_checks.h"
+#include "testbench/tests/support/timed_modules.h"
 
 // The machine with memories of the base protocol in place of its own: the same mesh, and the same cycles if the
 // latencies are equal.
 
 using namespace tessera;
 using namespace tessera::testing;
+using Catch::Contains;
 
 namespace {
-
-/// Makes the memory that replaces the machine's memory of this name, and binds the bridge to it.
-using Maker = std::function<std::unique_ptr<sc_core::sc_module>(BaseProtocolBridge&, const std::string&)>;
-
-template <class Memory, class... Arguments>
-std::unique_ptr<sc_core::sc_module> bound(BaseProtocolBridge& bridge, const std::string& name,
-                                          const Arguments&... arguments) {
-    auto memory = std::make_unique<Memory>((name + "_bus").c_str(), arguments...);
-    bridge.to_memory.bind(memory->socket);
-    return memory;
-}
-
-class BridgedUnits : public UnitFactory {
-  public:
-    BridgedUnits(const Timing& timing, Maker make) : timing_(timing), make_(std::move(make)) {}
-
-    void join(MemoryPort& port, TableMemory& memory) override { join_any(port, memory, 1); }
-    void join(MemoryPort& port, OffChipMemory& memory) override {
-        join_any(port, memory, timing_.off_chip_memory.buffer);
-    }
-    BaseProtocolBridge& bridge(const std::string& memory) { return *bridges_.at(memory); }
-
-  private:
-    void join_any(MemoryPort& port, const MemoryServer& memory, unsigned buffer) {
-        std::string name = memory.basename();
-        if (name == "displacement_map_for_tests")
-            name = "displacement_map";
-        if (bridges_.count(name) == 0) {
-            auto* clock = dynamic_cast<CycleScheduler*>(sc_core::sc_find_object("bridged.clock"));
-            bridges_[name] = std::make_unique<BaseProtocolBridge>(("bridge_of_" + name).c_str(), *clock, buffer);
-            memories_.push_back(make_(*bridges_[name], name));
-        }
-        port.bind(*bridges_[name]);
-    }
-
-    Timing timing_;
-    Maker make_;
-    std::map<std::string, std::unique_ptr<BaseProtocolBridge>> bridges_;
-    std::vector<std::unique_ptr<sc_core::sc_module>> memories_;
-};
 
 /// The machine with such memories, which the host fills.
 struct BridgedMachine {
@@ -70,16 +31,13 @@ struct BridgedMachine {
     Rasteriser rasteriser;
     MeshMonitor monitor;
 
-    BridgedMachine(const MachineSetup& setup, Maker make)
+    BridgedMachine(const MachineSetup& setup, BridgedMemory make)
         : units(setup.design.timing, std::move(make)),
           pipeline("bridged", setup.registers, setup.design, &units),
           host("bridged_host", pipeline, setup.base_triangles, tables_of(setup)),
           rasteriser("bridged_rasteriser", pipeline.clock, setup.design.timing.stalls),
           monitor("bridged_monitor", setup.registers.back_face_culling, 1'000'000) {
-        host.to_get_triangle.bind(pipeline.get_triangle.from_host);
-        host.displacement_map.bind(units.bridge("displacement_map").host);
-        host.normal_map.bind(units.bridge("normal_map").host);
-        host.summed_height_table.bind(units.bridge(pipeline.height_table.basename()).host);
+        host.bind();
         pipeline.lighting.to_rasteriser.bind(rasteriser.from_lighting);
         pipeline.pass_or_tessellate.finished.bind(monitor);
     }
@@ -166,4 +124,147 @@ TEST_CASE("bridged machine: pipelined memories and a queue that spills") {
 
 TEST_CASE("bridged machine: three Tessellation Tests units share the bridges") {
     expect_same_cycles(with_settings(full_split_job(3, 3), "hardware.tests_units=3"));
+}
+
+namespace {
+
+/// Keeps the kernel awake.
+struct Ticker : sc_core::sc_module {
+    explicit Ticker(const sc_core::sc_module_name& name) : sc_module(name) {
+        SC_HAS_PROCESS(Ticker);
+        SC_THREAD(tick);
+    }
+
+  private:
+    void tick() {
+        for (;;)
+            wait(sc_core::sc_time(100, sc_core::SC_NS));
+    }
+};
+
+/// Answers some accesses at once, then none.
+struct SilentMemory : sc_core::sc_module {
+    tlm_utils::passthrough_target_socket<SilentMemory> socket{"socket"};
+    Bytes bytes;
+    unsigned answers = 20;    ///< accesses that it answers
+    bool accepts = false;     ///< END_REQ comes
+    std::uint64_t asked = 0;  ///< address of the first access without an answer
+    sc_core::sc_time since;
+    unsigned unanswered = 0;
+
+    explicit SilentMemory(const sc_core::sc_module_name& name) : sc_module(name) {
+        socket.register_nb_transport_fw(this, &SilentMemory::nb_transport_fw);
+        socket.register_b_transport(this, &SilentMemory::b_transport);
+        socket.register_transport_dbg(this, &SilentMemory::transport_dbg);
+    }
+
+  private:
+    bool answered(tlm::tlm_generic_payload& payload) {
+        if (answers > 0) {
+            --answers;
+            bytes.access(payload);
+            return true;
+        }
+        if (unanswered++ == 0) {
+            asked = payload.get_address();
+            since = sc_core::sc_time_stamp();
+        }
+        return false;
+    }
+    tlm::tlm_sync_enum nb_transport_fw(tlm::tlm_generic_payload& payload, tlm::tlm_phase& phase, sc_core::sc_time&) {
+        if (answered(payload))
+            return tlm::TLM_COMPLETED;
+        if (!accepts)
+            return tlm::TLM_ACCEPTED;
+        phase = tlm::END_REQ;
+        return tlm::TLM_UPDATED;
+    }
+    void b_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time&) {
+        if (!answered(payload))
+            wait(never_);
+    }
+    unsigned transport_dbg(tlm::tlm_generic_payload& payload) { return bytes.access(payload); }
+
+    sc_core::sc_event never_{"never"};
+};
+
+struct Silent {
+    std::string name;
+    std::string settings;
+    std::string memory;
+    std::string port;
+    bool accepts = false;
+};
+
+const CaseTable<Silent> silent{
+    "a bridged memory that no longer answers, while another module keeps the kernel awake, is an error: ",
+    {
+        {"timed, the normal map, neither END_REQ nor answer", "mode=timed", "normal_map", "normal_test.normal_map"},
+        {"timed, the normal map, no answer", "mode=timed", "normal_map", "normal_test.normal_map", true},
+        {"timed, the displacement map", "mode=timed", "displacement_map", "displace_vertex.displacement_map"},
+        {"timed, the Summed Height Table", "mode=timed", "summed_height_table", "summed_height_test.table", true},
+        {"timed, behind a cache", "mode=timed timing.normal_map_cache_bytes=1024", "normal_map",
+         "normal_map_cache.table"},
+        {"timed, off-chip memory", "mode=timed hardware.queue_capacity=4", "off_chip_memory",
+         "triangle_queue.off_chip_memory", true},
+        {"timed, modern design", "mode=timed hardware.design=modern", "normal_map", ".normal_map", true},
+        {"functional, the normal map", "mode=functional", "normal_map", "normal_test.normal_map"},
+        {"functional, the displacement map", "mode=functional", "displacement_map", "displace_vertex.displacement_map"},
+        {"functional, modern design", "mode=functional hardware.design=modern", "summed_height_table",
+         "summed_height_test.table"},
+    },
+    [](const Silent& row) {
+        MachineSetup setup = setup_of(with_settings({}, row.settings));
+        setup.design.answer_cycles = 2000;
+        SilentMemory* memory = nullptr;
+        BridgedMachine machine(setup, [&](BaseProtocolBridge& bridge, const std::string& name) {
+            if (name != row.memory)
+                return blocking_5_ns(bridge, name);
+            auto its = std::make_unique<SilentMemory>((name + "_bus").c_str());
+            its->accepts = row.accepts;
+            bridge.to_memory.bind(its->socket);
+            memory = its.get();
+            return std::unique_ptr<sc_core::sc_module>(std::move(its));
+        });
+        const Ticker ticker("ticker");
+        const std::string error = error_of([] { sc_core::sc_start(sc_core::sc_time(10, sc_core::SC_MS)); });
+        CAPTURE(error);
+        REQUIRE(memory->unanswered > 0);
+        std::ostringstream address;
+        address << std::hex << "0x" << memory->asked;
+        CHECK_THAT(error, Contains("bridged.") && Contains(row.port + ": ") && Contains("has waited since ") &&
+                              Contains("10 us") && Contains("answer_cycles"));
+        if (row.settings.find("mode=functional") == 0)
+            CHECK_THAT(error, Contains(" " + address.str() + " ") && Contains("since " + memory->since.to_string()));
+        else
+            CHECK_THAT(error, Contains("bridge_of_" + row.memory));
+        CHECK((error.find("END_REQ") != std::string::npos) == (row.settings.find("mode=timed") == 0 && !row.accepts));
+        const sc_core::sc_time limit(10, sc_core::SC_US);
+        CHECK(sc_core::sc_time_stamp() >= limit);
+        CHECK(sc_core::sc_time_stamp() <= memory->since + limit + limit);
+    }};
+
+}  // namespace
+
+TEST_CASE("a bridged memory has no limit for its answers if answer_cycles is 0") {
+    MachineSetup setup = setup_of(timed_job());
+    setup.design.answer_cycles = 0;
+    BridgedMachine machine(
+        setup, [](BaseProtocolBridge& bridge, const std::string& name) { return bound<SilentMemory>(bridge, name); });
+    const Ticker ticker("ticker");
+    sc_core::sc_start(sc_core::sc_time(10, sc_core::SC_MS));
+    CHECK_FALSE(machine.pipeline.idle());
+}
+
+TEST_CASE("a bridged memory that is slow, within the limit, is no error, and the watch ends with the machine") {
+    MachineSetup setup = setup_of(with_settings(full_split_job(2, 2), "tests.normal=false"));
+    setup.design.answer_cycles = 2000;
+    BridgedMachine machine(setup, [](BaseProtocolBridge& bridge, const std::string& name) {
+        return bound<BlockingMemory>(bridge, name, sc_core::sc_time(9, sc_core::SC_US));
+    });
+    sc_core::sc_start();
+    machine.require_drained();
+    const sc_core::sc_time cycle(setup.design.timing.cycle_picoseconds, sc_core::SC_PS);
+    CHECK(sc_core::sc_time_stamp() <= cycle * static_cast<double>(machine.cycles()));
+    expect_mesh(machine.monitor.mesh, bare_mesh(setup));
 }
