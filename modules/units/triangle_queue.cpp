@@ -1,7 +1,7 @@
 #include "modules/units/triangle_queue.h"
 
 #include <algorithm>
-#include <sstream>
+#include <string>
 
 #include "modules/datapath/pack_triangle.h"
 #include "modules/stage/signals.h"
@@ -127,16 +127,14 @@ std::uint32_t TriangleQueue::checksum(const unsigned char* record) const {
 }
 
 void TriangleQueue::check_returned() {
-    const std::uint64_t place = returning_.front();
+    const std::uint64_t expected = returning_.front();
     returning_.pop_front();
-    if (checksum(off_chip_memory.answer()) == checksums_[place])
-        return;
-    std::ostringstream message;
-    message << off_chip_memory.socket.name()
-            << ": the memory that this port reads no longer holds the triangle that was "
-            << "written to it: give each machine a memory, or addresses, of its own; changed at address 0x" << std::hex
-            << place_address(place);
-    SC_REPORT_ERROR("tessera/triangle_queue", message.str().c_str());
+    if (checksum(off_chip_memory.answer()) != expected)
+        SC_REPORT_ERROR("tessera/triangle_queue",
+                        (std::string(off_chip_memory.socket.name()) +
+                         ": the memory that this port reads no longer holds a triangle that was written to it: give "
+                         "each machine a memory, or addresses, of its own")
+                            .c_str());
 }
 
 /// Returns false if there is no place for the triangle at present.
@@ -197,7 +195,7 @@ void TriangleQueue::refill() {
         --off_chip_;
         const std::uint64_t place = fifo ? off_chip_head_++ : off_chip_head_ + off_chip_;
         if (checks_off_chip_memory_)
-            returning_.push_back(place % design_.off_chip_triangles);
+            returning_.push_back(checksums_[place % design_.off_chip_triangles]);
         off_chip_memory.request(place_address(place));
         ++refills_;
     }

@@ -115,7 +115,7 @@ class TriangleQueue : public Unit {
     std::uint64_t refilled_ = 0;
     bool checks_off_chip_memory_ = false;
     std::vector<std::uint32_t> checksums_;  // of the triangles off chip, by place
-    std::deque<std::uint64_t> returning_;   // places of those on their way back
+    std::deque<std::uint64_t> returning_;   // checksums of those on their way back
     bool overflowed_ = false;
     bool off_chip_memory_full_ = false;
     LevelHistory history_;

@@ -157,7 +157,8 @@ const CaseTable<Stubborn> refused{
         {"the displacement map, no debug transport", "displacement_map", Debug::none,
          "displace_vertex.displacement_map"},
         {"the normal map, no debug transport", "normal_map", Debug::none, "normal_test.normal_map"},
-        {"the Summed Height Table, reads only", "summed_height_table", Debug::reads_only, "summed_height_test.table"},
+        {"the Summed Height Table, reads only", "summed_height_table", Debug::reads_only,
+         "summed_height_test.summed_height_table"},
         {"the normal map, writes are lost", "normal_map", Debug::loses_writes, "normal_test.normal_map"},
     },
     [](const Stubborn& row) {
@@ -181,7 +182,8 @@ const CaseTable<Stubborn> host_refused{
         {"the displacement map, no debug transport", "displacement_map", Debug::none,
          "displace_vertex.displacement_map"},
         {"the normal map, writes are lost", "normal_map", Debug::loses_writes, "normal_test.normal_map"},
-        {"the Summed Height Table, reads only", "summed_height_table", Debug::reads_only, "summed_height_test.table"},
+        {"the Summed Height Table, reads only", "summed_height_table", Debug::reads_only,
+         "summed_height_test.summed_height_table"},
     },
     [](const Stubborn& row) {
         const MachineSetup setup = setup_of(small_job(true));
@@ -239,41 +241,23 @@ TEST_CASE("a memory that already holds its table need not be writable") {
 
 namespace {
 
-/// One memory for several machines.
-struct SharedMemory : sc_core::sc_module {
-    tlm_utils::multi_passthrough_target_socket<SharedMemory> socket{"socket"};
-    Bytes bytes;
-
-    explicit SharedMemory(const sc_core::sc_module_name& name) : sc_module(name) {
-        socket.register_b_transport(this, &SharedMemory::b_transport);
-        socket.register_transport_dbg(this, &SharedMemory::transport_dbg);
-        socket.register_nb_transport_fw(this, &SharedMemory::nb_transport_fw);
-    }
-    BridgedMemory joined() {
-        return [this](BaseProtocolBridge& bridge, const std::string& name) -> std::unique_ptr<sc_core::sc_module> {
-            if (name == "off_chip_memory")
-                return blocking(bridge, name);
-            bridge.to_memory.bind(socket);
-            return nullptr;
-        };
-    }
-
-  private:
-    void b_transport(int, tlm::tlm_generic_payload& payload, sc_core::sc_time&) { bytes.access(payload); }
-    unsigned transport_dbg(int, tlm::tlm_generic_payload& payload) { return bytes.access(payload); }
-    tlm::tlm_sync_enum nb_transport_fw(int, tlm::tlm_generic_payload& payload, tlm::tlm_phase&, sc_core::sc_time&) {
-        bytes.access(payload);
-        return tlm::TLM_COMPLETED;
-    }
-};
+/// Joins the tables to this memory.
+BridgedMemory joined(SharedMemory& memory) {
+    return [&](BaseProtocolBridge& bridge, const std::string& name) -> std::unique_ptr<sc_core::sc_module> {
+        if (name == "off_chip_memory")
+            return blocking(bridge, name);
+        bridge.to_memory.bind(memory.socket);
+        return nullptr;
+    };
+}
 
 const CaseTable<BenchMode> shared{"two machines read the same tables from one memory: ",
                                   {{"functional", false}, {"timed", true}},
                                   [](const BenchMode& mode) {
                                       const MachineSetup setup = setup_of(small_job(mode.timed));
                                       SharedMemory memory("memory");
-                                      BridgedUnits first_units(setup.design.timing, memory.joined());
-                                      BridgedUnits second_units(setup.design.timing, memory.joined());
+                                      BridgedUnits first_units(setup.design.timing, joined(memory));
+                                      BridgedUnits second_units(setup.design.timing, joined(memory));
                                       NamedMachine first("first", setup, &first_units),
                                           second("second", setup, &second_units);
                                       sc_core::sc_start();
@@ -288,11 +272,29 @@ const CaseTable<BenchMode> overwritten{
         const MachineSetup setup = setup_of(small_job(mode.timed));
         const MachineSetup other = setup_of(small_job(mode.timed, "map.source=noise"));
         SharedMemory memory("memory");
-        BridgedUnits first_units(setup.design.timing, memory.joined());
-        BridgedUnits second_units(setup.design.timing, memory.joined());
+        BridgedUnits first_units(setup.design.timing, joined(memory));
+        BridgedUnits second_units(setup.design.timing, joined(memory));
         NamedMachine first("first", setup, &first_units), second("second", other, &second_units);
         CHECK_THAT(error_of([] { sc_core::sc_start(); }), Contains("first.pipeline.") && Contains("no longer holds"));
     }};
+
+// Registers that are not laid out have all tables at address 0.
+const CaseTable<BenchMode> overlapping{"a device whose tables lie over one another in one memory is an error: ",
+                                       {{"functional", false}, {"timed", true}},
+                                       [](const BenchMode& mode) {
+                                           const MachineSetup setup = setup_of(small_job(mode.timed));
+                                           SharedMemory memory("shared");
+                                           BridgedUnits units(setup.design.timing, joined(memory));
+                                           Bench bench({formats_of(setup)}, design_of(setup), false, true, {&units});
+                                           const FramePlaces places = bench.place(setup, 5000);
+                                           bench.cpu.program = [&](Processor&) {
+                                               tessera_driver& driver = bench.init();
+                                               set_frame(driver, setup, places);
+                                               run_frame(driver);
+                                           };
+                                           CHECK_THAT(error_of([] { sc_core::sc_start(); }),
+                                                      Contains("device_0.machine.") && Contains("no longer holds"));
+                                       }};
 
 const CaseTable<BenchMode> overwritten_frames{
     "likewise two devices, whichever frame fetches first: ",
@@ -301,10 +303,9 @@ const CaseTable<BenchMode> overwritten_frames{
         const MachineSetup setup = setup_of(small_job(mode.timed));
         const MachineSetup other = setup_of(small_job(mode.timed, "map.source=noise"));
         SharedMemory memory("shared");
-        BridgedUnits first_units(setup.design.timing, memory.joined());
-        BridgedUnits second_units(setup.design.timing, memory.joined());
-        Bench bench({formats_of(setup), formats_of(setup)}, design_of(setup), false, true,
-                    {&first_units, &second_units});
+        BridgedUnits first_units(setup.design.timing, joined(memory));
+        BridgedUnits second_units(setup.design.timing, joined(memory));
+        Bench bench({setup.registers, setup.registers}, design_of(setup), false, true, {&first_units, &second_units});
         const std::array<FramePlaces, 2> places{bench.place(setup, 5000), bench.place(other, 5000)};
         bool drawn = false;
         bench.cpu.program = [&](Processor&) {
@@ -325,14 +326,8 @@ const CaseTable<BenchMode> overwritten_frames{
 
 TEST_CASE("what a client writes to a table memory that no port reads is an error") {
     const MachineSetup setup = setup_of(small_job(true));
-    struct Client : sc_core::sc_module {
-        tlm_utils::simple_initiator_socket<Client> socket{"socket"};
-        explicit Client(const sc_core::sc_module_name& name) : sc_module(name) {}
-    } client("client"), of_another("of_another");
     BridgedUnits units(setup.design.timing, blocking);
     NamedMachine machine("machine", setup, &units), other("other", setup);
-    client.socket.bind(machine.pipeline.normal_map.host);
-    of_another.socket.bind(other.pipeline.normal_map.host);
     sc_core::sc_start(sc_core::SC_ZERO_TIME);
     unsigned char data[4] = {};
     tlm::tlm_generic_payload payload;
@@ -340,9 +335,9 @@ TEST_CASE("what a client writes to a table memory that no port reads is an error
     payload.set_data_ptr(data);
     payload.set_data_length(4);
     payload.set_read();
-    CHECK(client.socket->transport_dbg(payload) == 4);
+    CHECK(machine.host.normal_map->transport_dbg(payload) == 4);
     payload.set_write();
-    CHECK_THAT(error_of([&] { client.socket->transport_dbg(payload); }),
+    CHECK_THAT(error_of([&] { machine.host.normal_map->transport_dbg(payload); }),
                Contains("machine.pipeline.normal_map") && Contains("write_table"));
-    CHECK(of_another.socket->transport_dbg(payload) == 4);
+    CHECK(other.host.normal_map->transport_dbg(payload) == 4);
 }

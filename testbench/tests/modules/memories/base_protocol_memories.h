@@ -1,4 +1,5 @@
 #pragma once
+#include <tlm_utils/multi_passthrough_target_socket.h>
 #include <tlm_utils/passthrough_target_socket.h>
 #include <tlm_utils/peq_with_get.h>
 #include <tlm_utils/simple_target_socket.h>
@@ -53,6 +54,26 @@ struct BlockingMemory : sc_core::sc_module {
             delay += latency;
     }
     unsigned transport_dbg(tlm::tlm_generic_payload& payload) { return bytes.access(payload); }
+};
+
+/// Without latency, for several initiators.
+struct SharedMemory : sc_core::sc_module {
+    tlm_utils::multi_passthrough_target_socket<SharedMemory> socket{"socket"};
+    Bytes bytes;
+
+    explicit SharedMemory(const sc_core::sc_module_name& name) : sc_module(name) {
+        socket.register_b_transport(this, &SharedMemory::b_transport);
+        socket.register_transport_dbg(this, &SharedMemory::transport_dbg);
+        socket.register_nb_transport_fw(this, &SharedMemory::nb_transport_fw);
+    }
+
+  private:
+    void b_transport(int, tlm::tlm_generic_payload& payload, sc_core::sc_time&) { bytes.access(payload); }
+    unsigned transport_dbg(int, tlm::tlm_generic_payload& payload) { return bytes.access(payload); }
+    tlm::tlm_sync_enum nb_transport_fw(int, tlm::tlm_generic_payload& payload, tlm::tlm_phase&, sc_core::sc_time&) {
+        bytes.access(payload);
+        return tlm::TLM_COMPLETED;
+    }
 };
 
 /// Any latency and bandwidth, pipelined: END_REQ after the request's last byte, the response a latency later.

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <memory>
 #include <sstream>
@@ -7,6 +8,7 @@
 #include "modules/datapath/pack_triangle.h"
 #include "testbench/tests/modules/memories/base_protocol_memories.h"
 #include "testbench/tests/modules/memories/bridged_units.h"
+#include "testbench/tests/modules/named_machine.h"
 #include "testbench/tests/support/bare_mesh.h"
 #include "testbench/tests/support/case_table.h"
 #include "testbench/tests/support/job_results.h"
@@ -202,7 +204,8 @@ const CaseTable<Silent> silent{
         {"timed, the normal map, neither END_REQ nor answer", "mode=timed", "normal_map", "normal_test.normal_map"},
         {"timed, the normal map, no answer", "mode=timed", "normal_map", "normal_test.normal_map", true},
         {"timed, the displacement map", "mode=timed", "displacement_map", "displace_vertex.displacement_map"},
-        {"timed, the Summed Height Table", "mode=timed", "summed_height_table", "summed_height_test.table", true},
+        {"timed, the Summed Height Table", "mode=timed", "summed_height_table",
+         "summed_height_test.summed_height_table", true},
         {"timed, behind a cache", "mode=timed timing.normal_map_cache_bytes=1024", "normal_map",
          "normal_map_cache.table"},
         {"timed, off-chip memory", "mode=timed hardware.queue_capacity=4", "off_chip_memory",
@@ -211,7 +214,7 @@ const CaseTable<Silent> silent{
         {"functional, the normal map", "mode=functional", "normal_map", "normal_test.normal_map"},
         {"functional, the displacement map", "mode=functional", "displacement_map", "displace_vertex.displacement_map"},
         {"functional, modern design", "mode=functional hardware.design=modern", "summed_height_table",
-         "summed_height_test.table"},
+         "summed_height_test.summed_height_table"},
     },
     [](const Silent& row) {
         MachineSetup setup = setup_of(with_settings({}, row.settings));
@@ -258,13 +261,31 @@ TEST_CASE("a bridged memory has no limit for its answers if answer_cycles is 0")
 
 TEST_CASE("a bridged memory that is slow, within the limit, is no error, and the watch ends with the machine") {
     MachineSetup setup = setup_of(with_settings(full_split_job(2, 2), "tests.normal=false"));
-    setup.design.answer_cycles = 2000;
+    setup.design.answer_cycles = 20'000;  // 100 us; several requests of four entries wait for one another
     BridgedMachine machine(setup, [](BaseProtocolBridge& bridge, const std::string& name) {
-        return bound<BlockingMemory>(bridge, name, sc_core::sc_time(9, sc_core::SC_US));
+        return bound<BlockingMemory>(bridge, name, sc_core::sc_time(1, sc_core::SC_US));
     });
     sc_core::sc_start();
     machine.require_drained();
     const sc_core::sc_time cycle(setup.design.timing.cycle_picoseconds, sc_core::SC_PS);
     CHECK(sc_core::sc_time_stamp() <= cycle * static_cast<double>(machine.cycles()));
     expect_mesh(machine.monitor.mesh, bare_mesh(setup));
+}
+
+TEST_CASE("two machines that spill to the same addresses of one memory are an error") {
+    const MachineSetup setup = setup_of(with_settings(full_split_job(3, 3), "hardware.queue_capacity=4"));
+    MachineSetup other = setup;
+    std::reverse(other.base_triangles.begin(), other.base_triangles.end());
+    SharedMemory memory("memory");
+    const BridgedMemory make = [&](BaseProtocolBridge& bridge,
+                                   const std::string& name) -> std::unique_ptr<sc_core::sc_module> {
+        if (name != "off_chip_memory")
+            return blocking_5_ns(bridge, name);
+        bridge.to_memory.bind(memory.socket);
+        return nullptr;
+    };
+    BridgedUnits first_units(setup.design.timing, make), second_units(setup.design.timing, make);
+    NamedMachine first("first", setup, &first_units), second("second", other, &second_units);
+    CHECK_THAT(error_of([] { sc_core::sc_start(); }),
+               Contains("triangle_queue.off_chip_memory: ") && Contains("no longer holds a triangle"));
 }
