@@ -259,7 +259,7 @@ void Conductor::finish(std::uint64_t cycles) {
     assign(machine_.normal_map, schedule::normal_map);
     assign(machine_.height_table, schedule::height_table);
     const schedule::Source& source = schedule_->source();
-    machine_.triangle_queue.assign({source.highest(), source.highest_in_store(), source.history()});
+    machine_.triangle_queue.assign({source.highest(), source.history()});
     machine_.triangle_pass_or_tessellate->assign_most_ahead_of_parts(schedule_->most_ahead_of_parts());
     machine_.get_triangle.assign_parts_sent(schedule_->parts_sent());
     machine_.triangle_pass_or_tessellate->from_transform.assign_taken(schedule_->parts_sent());

@@ -4,11 +4,35 @@
 #include <cstdint>
 #include <vector>
 
+#include "modules/datapath/parameters.h"
+#include "modules/timing/timing.h"
+
 namespace tessera {
+
+/// The cache that is built for the given sizes, each of them rounded down.
+///
+/// Line:   as many whole entries of the table as fit, at least one.
+/// Size:   whole sets of `ways` lines; with fewer lines one set of all of them, at least one line.
+/// A cache with room for the whole table has one line for each of the table's, in its own set.
+struct CacheShape {
+    unsigned line_bytes;
+    std::uint64_t ways, sets;
+    bool whole_table;
+
+    CacheShape(const CacheTiming& cache, const datapath::TableLayout& layout)
+        : line_bytes(std::max(1u, cache.line_bytes / layout.entry_bytes) * layout.entry_bytes) {
+        const std::uint64_t lines = std::max<std::uint64_t>(1, cache.bytes / line_bytes),
+                            of_table = (layout.bytes() + line_bytes - 1) / line_bytes;
+        whole_table = lines >= of_table;
+        ways = whole_table ? 1 : std::min<std::uint64_t>(cache.ways, lines);
+        sets = whole_table ? std::max<std::uint64_t>(1, of_table) : lines / ways;
+    }
+
+    std::uint64_t bytes() const { return ways * sets * line_bytes; }
+};
 
 /// The lines of a set-associative cache: their tags, data and order of use.
 ///
-/// Size:   max(1, bytes / line bytes) lines, in sets of `ways`.
 /// Set:    line n is in set (n ^ n / sets ^ n / sets^2) mod sets; for a power of two the exclusive OR of three groups
 ///         of bits. A table column is thus spread over all sets even if the pitch is a power of two; n mod sets would
 ///         use only a few.
@@ -23,15 +47,11 @@ class LineCache {
         std::vector<unsigned char> data;
     };
 
-    LineCache(std::uint64_t bytes, unsigned ways, unsigned line_bytes)
-        : ways_(std::min<std::uint64_t>(ways, lines_of(bytes, line_bytes))),
-          sets_(lines_of(bytes, line_bytes) / ways_),
-          lines_(ways_ * sets_) {
+    LineCache(std::uint64_t sets, std::uint64_t ways, unsigned line_bytes)
+        : ways_(ways), sets_(sets), lines_(ways_ * sets_) {
         for (Line& line : lines_)
             line.data.resize(line_bytes);
     }
-
-    std::uint64_t lines() const { return lines_.size(); }
 
     /// Invalidates all lines. No line may be in the process of being filled.
     void clear() {
@@ -70,9 +90,6 @@ class LineCache {
     }
 
   private:
-    static std::uint64_t lines_of(std::uint64_t bytes, unsigned line_bytes) {
-        return std::max<std::uint64_t>(1, bytes / line_bytes);
-    }
     Line* set_of(std::uint64_t number) { return &lines_[set_number(number, sets_) * ways_]; }
 
     std::uint64_t ways_;

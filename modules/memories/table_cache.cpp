@@ -6,21 +6,18 @@
 #include "modules/stage/signals.h"
 
 namespace tessera {
-namespace {
-
-unsigned bytes_of_whole_entries(const CacheTiming& cache, const datapath::TableLayout& layout) {
-    return std::max(1u, cache.line_bytes / layout.entry_bytes) * layout.entry_bytes;
-}
-
-}  // namespace
 
 TableCache::TableCache(const sc_core::sc_module_name& name, CycleScheduler& clock, const datapath::TableLayout& layout,
                        const MemoryTiming& timing, const StallParameters& stalls)
+    : TableCache(name, clock, layout, timing, stalls, CacheShape(timing.cache, layout)) {}
+
+TableCache::TableCache(const sc_core::sc_module_name& name, CycleScheduler& clock, const datapath::TableLayout& layout,
+                       const MemoryTiming& timing, const StallParameters& stalls, const CacheShape& shape)
     : MemoryServer(name, clock, timing.buffer, stalls),
-      table("table", bytes_of_whole_entries(timing.cache, layout), false),
+      table("table", shape.line_bytes, false),
       base_(layout.base),
-      line_bytes_(bytes_of_whole_entries(timing.cache, layout)),
-      cache_(timing.cache.bytes, timing.cache.ways, line_bytes_),
+      line_bytes_(shape.line_bytes),
+      cache_(shape.sets, shape.ways, shape.line_bytes),
       ports_(timing, layout),
       gathers_(timing.cache.fills),
       to_fetch_(timing.cache.fills),

@@ -14,7 +14,7 @@ namespace tessera {
 /// A cache between the units and a table in off-chip memory, in designs with `timing.TABLE_cache_bytes`.
 ///
 /// In:        requests, as a MemoryServer. Out: `table`, reads of whole lines.
-/// Lines:     line_cache.h. A line holds as many whole entries as fit in its bytes.
+/// Lines:     line_cache.h.
 /// Lookup:    entries in order, any number per cycle; tags are banked like the data. An entry whose line is neither
 ///            present nor being filled begins a fill. Up to `fills` lines, and as many requests, are under way.
 ///            Requests are looked up and answered in order.
@@ -45,6 +45,9 @@ class TableCache : public MemoryServer {
     void trace_signals(Signals& signals) const override;
 
   private:
+    TableCache(const sc_core::sc_module_name& name, CycleScheduler& clock, const datapath::TableLayout& layout,
+               const MemoryTiming& timing, const StallParameters& stalls, const CacheShape& shape);
+
     /// A request that has been looked up, in whole or in part.
     struct Gather {
         MemoryRequest* request = nullptr;

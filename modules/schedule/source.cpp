@@ -119,15 +119,12 @@ void Source::account(Cycle end) {
         const Cycle cycle = cycle_of(when);
         while (accounted_departs_ < departs_.count() && departs_[accounted_departs_] <= when)
             account_depart();
-        while (accounted_starts_ < starts_.count() && starts_[accounted_starts_] <= when)
-            ++accounted_starts_;
         left_by_cycle_ = std::max(left_by_cycle_, accounted_departs_);
         while (left_by_cycle_ < departs_.count() && cycle_of(departs_[left_by_cycle_]) <= cycle)
             ++left_by_cycle_;
         const std::uint64_t pushes = accounted_pushes_ + 1;
         history_.set(cycle, pushes - accounted_departs_);
         highest_ = std::max(highest_, pushes - accounted_departs_);
-        highest_in_store_ = std::max(highest_in_store_, pushes - accounted_starts_);
         most_ = std::max({most_, std::uint64_t{1}, pushes - left_by_cycle_});
         item_cycles_ -= cycle;
         if (observer_ != nullptr)
@@ -136,7 +133,7 @@ void Source::account(Cycle end) {
     const auto before = [](std::uint64_t count, std::uint64_t back) { return count < back ? 0 : count - back; };
     departs_.forget_before(std::min(
         {accounted_departs_, begun_, before(departs_.count(), 1), before(starts_.count(), plan_.queue.stages)}));
-    starts_.forget_before(std::min({accounted_starts_, departs_.count(), begun_}));
+    starts_.forget_before(std::min(departs_.count(), begun_));
     pushes_.forget_before(std::min({accounted_pushes_, stored_, departs_.count(), pushed_before_}));
 }
 

@@ -63,7 +63,6 @@ class Source {
     std::uint64_t most() const { return most_; }
     /// Highest level at any time, also within a cycle.
     std::uint64_t highest() const { return highest_; }
-    std::uint64_t highest_in_store() const { return highest_in_store_; }
     const LevelHistory& history() const { return history_; }
 
   private:
@@ -105,11 +104,9 @@ class Source {
     LevelHistory history_;
     std::uint64_t accounted_pushes_ = 0;
     std::uint64_t accounted_departs_ = 0;
-    std::uint64_t accounted_starts_ = 0;
     std::uint64_t left_by_cycle_ = 0;
     std::uint64_t most_ = 0;
     std::uint64_t highest_ = 0;
-    std::uint64_t highest_in_store_ = 0;
     std::uint64_t item_cycles_ = 0;
     ItemObserver* observer_ = nullptr;
 };

@@ -49,8 +49,9 @@ void declare_memory_keys(const Keys& key, const std::string& leaf, const std::st
     key.add_number(
         leaf + "_cache_bytes", [memory](auto& t) -> auto& { return memory(t).cache.bytes; }, "bytes", {0, 1 << 30},
         name +
-            ": size of the cache in front of it, at least a line; the cache has the ports, banks and latency above, and "
-            "the table is in off-chip memory; 0: the table is on chip");
+            ": size of the cache in front of it, rounded down to whole sets of lines, at least a line, at most the table; "
+            "the cache has the ports, banks and latency above, and the table is in off-chip memory; 0: the table is on "
+            "chip");
     key.add_number(
         leaf + "_line_bytes", [memory](auto& t) -> auto& { return memory(t).cache.line_bytes; }, "bytes", {1, 4096},
         name + ": size of a cache line, rounded down to whole entries, at least one");

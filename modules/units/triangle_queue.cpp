@@ -62,7 +62,7 @@ void TriangleQueue::send(std::uint32_t place, sc_core::sc_time& delay) {
 
 void TriangleQueue::assign(const Levels& levels) {
     high_water_mark_ = levels.most;
-    on_chip_high_water_mark_ = levels.most_on_chip;
+    on_chip_high_water_mark_ = levels.most;
     history_ = levels.history;
 }
 
@@ -98,7 +98,7 @@ void TriangleQueue::send_waiting() {
 
 void TriangleQueue::level_changed(std::uint64_t cycle) {
     high_water_mark_ = std::max(high_water_mark_, waiting());
-    on_chip_high_water_mark_ = std::max(on_chip_high_water_mark_, store_.size());
+    on_chip_high_water_mark_ = std::max(on_chip_high_water_mark_, store_.size() + leaving_.size());
     history_.set(cycle, waiting());
 }
 
@@ -182,7 +182,7 @@ void TriangleQueue::take_back() {
                 store_.push_oldest(triangle);
             --refills_;
             ++refilled_;
-            on_chip_high_water_mark_ = std::max(on_chip_high_water_mark_, store_.size());
+            on_chip_high_water_mark_ = std::max(on_chip_high_water_mark_, store_.size() + leaving_.size());
         }
         off_chip_memory.pop_answer();
     }

@@ -49,6 +49,7 @@ class TriangleQueue : public Unit {
     }
     std::uint64_t taken() const { return taken_; }
     std::size_t high_water_mark() const { return high_water_mark_; }
+    /// Of those in its places, at most the capacity, and those leaving.
     std::size_t on_chip_high_water_mark() const { return on_chip_high_water_mark_; }
     std::uint64_t spilled() const { return spilled_; }
     std::uint64_t refilled() const { return refilled_; }
@@ -72,7 +73,7 @@ class TriangleQueue : public Unit {
     /// Conducted: sends the triangle kept in this place.
     void send(std::uint32_t place, sc_core::sc_time& delay);
     struct Levels {
-        std::uint64_t most = 0, most_on_chip = 0;
+        std::uint64_t most = 0;  ///< all on chip
         LevelHistory history;
     };
     void assign(const Levels& levels);

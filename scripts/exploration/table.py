@@ -86,6 +86,24 @@ def mark_fronts(sweep, rows):
             judged[index].front = True
 
 
+def idle_axes(table):
+    """The axes, as text, along which no figure changes: in no two finished runs that differ in that axis alone."""
+    idle, first = [], 0
+    for axis in table.sweep.axes:
+        after = first + len(axis.columns)
+        groups = {}
+        for row in table.rows:
+            if row.status == "ok":
+                cells = row.design.cells
+                others = repr((row.design.scene, cells[:first], cells[after:]))
+                groups.setdefault(others, []).append((cells[first:after], row.figures))
+        compared = [group for group in groups.values() if any(cells != group[0][0] for cells, _ in group)]
+        if compared and all(figures == group[0][1] for group in compared for _, figures in group):
+            idle.append(", ".join(axis.columns))
+        first = after
+    return idle
+
+
 def make_table(sweep, program, designs, store):
     table = Table(sweep, key_units(program))
     for design in designs:

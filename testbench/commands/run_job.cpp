@@ -24,6 +24,7 @@
 #include "testbench/common/parallel.h"
 #include "testbench/job/dump_job.h"
 #include "testbench/job/read_job.h"
+#include "testbench/machine/design_remarks.h"
 #include "testbench/machine/engine.h"
 #include "testbench/machine/fingerprint.h"
 #include "testbench/machine/inputs.h"
@@ -78,6 +79,8 @@ Loaded load(const Job& asked) {
     for (const std::string& repair : inputs.map.repairs)
         remarks.push_back("map: " + repair);
     loaded.setup.remarks.insert(loaded.setup.remarks.begin(), remarks.begin(), remarks.end());
+    for (std::string& remark : design_remarks(inputs.resolved.job, loaded.setup))
+        loaded.setup.remarks.push_back(std::move(remark));
     return loaded;
 }
 

@@ -33,14 +33,19 @@ double percent(std::uint64_t part, std::uint64_t whole) {
 }
 
 /// A check's row, marked if it failed.
-std::string check_row(const char* name, bool passed, const std::string& value) {
-    return row(name, (passed ? "" : "FAILED: ") + value);
+template <class Result>
+std::string check_row(const char* name, const Result& result, bool passed, const std::string& value) {
+    return row(name, (passed ? "" : "FAILED: ") + value + (result.empty() ? "; nothing was compared" : ""));
+}
+template <class Result>
+std::string check_row(const char* name, const Result& result, const std::string& value) {
+    return check_row(name, result, result.passed(), value);
 }
 
 std::string checks_rows(const Checks& checks) {
     std::string text;
     if (checks.setup)
-        text += check_row("set-up", checks.setup->passed(),
+        text += check_row("set-up", *checks.setup,
                           fmt::format("{} values of registers, base vertices and tables compared, {} wrong",
                                       count(checks.setup->compared()), count(checks.setup->wrong())));
     if (checks.conformance) {
@@ -48,14 +53,14 @@ std::string checks_rows(const Checks& checks) {
         std::string verdict;
         if (c.flips_percent() > checks.allowed_flips)
             verdict = fmt::format(", more than the {} % that check.allowed_flips allows", checks.allowed_flips);
-        text += check_row("golden model", c.passed(checks.allowed_flips),
+        text += check_row("golden model", c, c.passed(checks.allowed_flips),
                           fmt::format("{} edges compared, {} mismatches, {} allowed flips ({:.3f} %){}", count(c.edges),
                                       count(c.mismatches), count(c.flipped_edges), c.flips_percent(), verdict));
     }
     if (checks.end_to_end) {
         const EndToEndResult& e = *checks.end_to_end;
         text += check_row(
-            "golden mesh", e.passed(),
+            "golden mesh", e,
             e.bound_hit
                 ? fmt::format("more than {} triangles; its run was stopped there", count(e.bound))
                 : fmt::format("{} triangles ({:+.2f} %, allowed {}); {:.2f} % of the points farther apart than "
@@ -77,7 +82,7 @@ std::string checks_rows(const Checks& checks) {
         const std::string wrong =
             (i.wrong_triangles() == 0 ? "" : fmt::format(", {} triangles wrong", count(i.wrong_triangles()))) +
             (i.unfinished == 0 ? "" : ", the bare datapath's recursion does not end");
-        text += check_row("invariants", i.passed(),
+        text += check_row("invariants", i,
                           fmt::format("{} cracks, {} T-vertices{}; in texture space {} collapsed, {} turned over",
                                       i.cracks, i.t_vertices, wrong, i.collapsed, i.turned_over));
         if (i.open_texture_seam_edges > 0)
@@ -89,13 +94,16 @@ std::string checks_rows(const Checks& checks) {
     }
     if (checks.work)
         text += check_row(
-            "work conservation", checks.work->passed(),
+            "work conservation", *checks.work,
             fmt::format("{} triangles and {} unit counts checked, {} violations", count(checks.work->triangles),
                         count(checks.work->equations), count(checks.work->violations)));
     if (checks.reads)
         text += check_row(
-            "reads", checks.reads->passed(),
-            fmt::format("{} entries compared, {} wrong", count(checks.reads->entries), count(checks.reads->wrong)));
+            "reads", *checks.reads,
+            fmt::format("{} entries compared, {} wrong{}", count(checks.reads->entries), count(checks.reads->wrong),
+                        checks.reads->missed == 0
+                            ? ""
+                            : fmt::format(", {} read but not compared", count(checks.reads->missed))));
     return text;
 }
 
@@ -135,9 +143,13 @@ std::string timing_rows(const Simulation& simulation) {
                                   static_cast<double>(simulation.cycles()) * period * 1e3, 1e-6 / period));
     text += row("bottleneck", bottleneck_text(simulation.last_machine().pipeline, simulation.cycles()));
     const UnitArea area = total_area(area_of(simulation));
-    text += row("hardware", fmt::format("{} multipliers, {} bits of registers, {} bits of memory with {} table ports",
-                                        count(area.multipliers), count(area.register_bits), count(area.memory_bits),
-                                        count(area.ports)));
+    text +=
+        row("hardware",
+            fmt::format("{} multipliers ({} bits of partial products), {} bits of registers, {} bits of memory with "
+                        "{} table ports{}",
+                        count(area.multiplier_count()), count(area.partial_product_bits()), count(area.register_bits),
+                        count(area.memory_bits), count(area.ports),
+                        simulation.setup.design.queue.capacity == 0 ? "; the unbounded queue is not counted" : ""));
     std::uint64_t fetched = 0;
     std::string rates;
     for (std::size_t k = 0; k < simulation.pipeline.caches().size(); ++k) {
@@ -157,8 +169,8 @@ std::string timing_rows(const Simulation& simulation) {
                                            static_cast<double>(std::max<std::uint64_t>(1, totals.counts.finished)),
                                        rates.substr(2)));
     if (totals.spilled > 0)
-        text += row("spilled", fmt::format("{} triangles, at most {} on chip", count(totals.spilled),
-                                           count(totals.most_queued_on_chip)));
+        text += row("spilled", fmt::format("{} triangles, at most {} on chip, with those on their way out",
+                                           count(totals.spilled), count(totals.most_queued_on_chip)));
     return text;
 }
 

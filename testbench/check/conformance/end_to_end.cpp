@@ -135,7 +135,7 @@ double EndToEndResult::more_triangles() const {
 
 bool EndToEndResult::passed() const {
     return !bound_hit && std::abs(more_triangles()) <= allowed.triangles && farther() <= allowed_farther() &&
-           rms_model() <= allowed_rms_model();
+           rms_model() <= allowed_rms_model() && !empty();
 }
 
 void GoldenSurface::add(const golden::Triangle& t) {

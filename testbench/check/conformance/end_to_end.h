@@ -63,6 +63,7 @@ struct EndToEndResult {
     double allowed_farther() const { return 3 * allowed.triangles; }
     /// From the points within `rounding` and the points farther away, which are within `displacement`.
     double allowed_rms_model() const { return allowed.rounding + std::sqrt(farther() / 100) * allowed.displacement; }
+    bool empty() const { return hardware_to_golden.measured == 0 || golden_to_hardware.measured == 0; }
     bool passed() const;
 };
 

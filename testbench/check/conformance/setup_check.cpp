@@ -485,6 +485,11 @@ std::uint64_t SetupResult::compared() const {
     return sum;
 }
 
+bool SetupResult::empty() const {
+    return parts.empty() ||
+           std::any_of(parts.begin(), parts.end(), [](const Part& part) { return part.compared == 0; });
+}
+
 std::uint64_t SetupResult::wrong() const {
     std::uint64_t sum = 0;
     for (const Part& part : parts)

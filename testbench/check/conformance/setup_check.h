@@ -28,7 +28,8 @@ struct SetupResult {
 
     std::uint64_t compared() const;
     std::uint64_t wrong() const;
-    bool passed() const { return wrong() == 0; }
+    bool empty() const;  ///< a part compared nothing
+    bool passed() const { return !empty() && wrong() == 0; }
 };
 
 /// Compares the host's set-up with values that the golden model derives from the job independently: each register, each

@@ -48,7 +48,8 @@ struct InvariantResult {
     /// none.
     std::string first_violation;
 
-    bool passed() const { return violations() == 0; }
+    bool empty() const { return triangles == 0 || edges == 0; }
+    bool passed() const { return !empty() && violations() == 0; }
     std::uint64_t violations() const;
     std::uint64_t wrong_triangles() const { return missing_triangles + extra_triangles + differing_triangles; }
 };

@@ -15,9 +15,11 @@ namespace tessera {
 struct ReadResult {
     std::uint64_t entries = 0;  ///< compared
     std::uint64_t wrong = 0;    ///< different from the memory's
+    std::uint64_t missed = 0;   ///< read by a unit or cache, but not compared
     std::string first_wrong;    ///< empty: none
 
-    bool passed() const { return wrong == 0; }
+    bool empty() const { return entries == 0; }
+    bool passed() const { return !empty() && wrong == 0 && missed == 0; }
 };
 
 /// Inserted at a unit's memory port. Forwards all transactions and compares the data of each read with the memory's
@@ -33,6 +35,7 @@ class ReadCheck : public sc_core::sc_module {
     ReadCheck(const sc_core::sc_module_name& name, std::string port);
 
     const ReadResult& result() const { return result_; }
+    const std::string& port() const { return port_; }
 
   private:
     /// A pending request and its copy, which no module downstream can modify.

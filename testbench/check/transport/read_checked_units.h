@@ -15,7 +15,7 @@ class ReadCheckedUnits : public UnitFactory {
     void join(MemoryPort& port, TableMemory& memory) override;
     void join(MemoryPort& port, TableCache& cache) override;
 
-    /// Over all tables.
+    /// Over all tables. Call before the machine is destroyed.
     ReadResult result() const;
 
   protected:
@@ -23,7 +23,11 @@ class ReadCheckedUnits : public UnitFactory {
     ReadCheck& check(MemoryPort& port, const sc_core::sc_object& memory);
 
   private:
-    std::vector<std::unique_ptr<ReadCheck>> checks_;
+    struct Checked {
+        const MemoryPort* port;
+        std::unique_ptr<ReadCheck> check;
+    };
+    std::vector<Checked> checks_;
 };
 
 }  // namespace tessera

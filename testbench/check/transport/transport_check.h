@@ -19,7 +19,8 @@ struct WorkResult {
         0;  ///< failed equations, base triangles whose hash sums are not zero, and single findings
     std::string first_violation;  ///< empty: none
 
-    bool passed() const { return violations == 0; }
+    bool empty() const { return triangles == 0; }
+    bool passed() const { return !empty() && violations == 0; }
 };
 
 /// Checks that no triangle is lost, duplicated or altered between units. The expected triangles follow from earlier

@@ -1,7 +1,9 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "modules/datapath/parameters.h"
@@ -10,21 +12,31 @@
 
 namespace tessera {
 
+/// The widths of a multiplication's operands in bits, the wider first.
+using OperandWidths = std::pair<int, int>;
+
 /// Hardware of one unit or memory of a design, counted from the design's parameters.
 struct UnitArea {
-    std::string name;               ///< "transform"
-    std::uint64_t multipliers = 0;  ///< with one result per initiation interval; those for addresses are excluded
+    std::string name;  ///< "transform"
+    /// With one result per initiation interval; those for addresses are excluded.
+    std::map<OperandWidths, std::uint64_t> multipliers{};
     /// Input buffers, pipeline registers, state: the widths of the items they hold; for a memory, the waiting
     /// addresses. Excluded: control, and a cache's bookkeeping.
     std::uint64_t register_bits = 0;
-    /// A table's entries, or those in its cache (without tags), or the Triangle Queue's places on chip.
+    /// A table's entries, or those in its cache (without tags), once for each port of a bank; or the Triangle Queue's
+    /// places on chip, none if it is unbounded. A memory of the usual cells has one read port, so that p ports take p
+    /// copies, written together (LaForest and Steffan, Efficient Multi-Ported Memories for FPGAs, FPGA 2010). Banks
+    /// divide the entries.
     std::uint64_t memory_bits = 0;
     std::uint64_t ports = 0;  ///< of a table: entries per cycle, all banks together
+
+    std::uint64_t multiplier_count() const;
+    /// One bit for each bit of one operand and bit of the other: about what a multiplier's area is proportional to.
+    std::uint64_t partial_product_bits() const;
 };
 
-/// In the order of the figures; the units of several Tessellation Tests are added up. queue_places: the Triangle
-/// Queue's places on chip; for an unbounded queue, as many as a run needed.
-std::vector<UnitArea> design_area(const Design& design, const datapath::Registers& registers, std::size_t queue_places);
+/// In the order of the figures; the units of several Tessellation Tests are added up.
+std::vector<UnitArea> design_area(const Design& design, const datapath::Registers& registers);
 
 /// The area of a run's design, all machines together.
 std::vector<UnitArea> area_of(const Simulation& simulation);
@@ -32,11 +44,22 @@ std::vector<UnitArea> area_of(const Simulation& simulation);
 /// The sum, named "total".
 UnitArea total_area(const std::vector<UnitArea>& units);
 
-/// Multiplications of the datapath's functions (modules/datapath/README.md).
+/// The multiplications of the datapath's functions (modules/datapath/README.md), one element each.
 struct Multiplications {
-    static constexpr unsigned normalise = 12, bump = 15 + normalise, displace = 4;
-    static constexpr unsigned transform = 15, transform_normal = 9, light = 4, faces_away = 2;
-    static constexpr unsigned summed_height_limit = 2, curvature_measure = 6, highlight_test = 9, interpolate = 3;
+    const datapath::Formats& f;
+    using List = std::vector<OperandWidths>;
+
+    List normalise(int component_bits) const;
+    List bump() const;  ///< with its normalise
+    List displace() const;
+    List transform() const;
+    List transform_normal() const;
+    List light() const;
+    List faces_away() const;
+    List summed_height_limit() const;
+    List curvature_measure() const;
+    List highlight_test() const;
+    List interpolate() const;  ///< one value
 };
 
 }  // namespace tessera

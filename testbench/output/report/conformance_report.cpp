@@ -16,6 +16,15 @@ const char* verdict(bool passed) {
     return passed ? "passed" : "FAILED";
 }
 
+template <class Result>
+std::string verdict(const Result& result, bool passed) {
+    return std::string(verdict(passed)) + (result.empty() ? ", since nothing was compared" : "");
+}
+template <class Result>
+std::string verdict(const Result& result) {
+    return verdict(result, result.passed());
+}
+
 const char* kind_name(InvariantFigure::Kind kind) {
     switch (kind) {
         case InvariantFigure::Kind::fact: return "fact";
@@ -34,7 +43,7 @@ std::string decisions_text(const ConformanceResult& result, double allowed_flips
         "most {} %\n"
         "of the edges.\n\n"
         "  {:<16}{:>12}{:>12}{:>14}{:>12}\n",
-        verdict(result.passed(allowed_flips)), allowed_flips, "decision", "compared", "agreed", "allowed flips",
+        verdict(result, result.passed(allowed_flips)), allowed_flips, "decision", "compared", "agreed", "allowed flips",
         "mismatches");
     for (const ConformanceResult::Test& test : result.tests)
         text += fmt::format("  {:<16}{:>12}{:>12}{:>14}{:>12}\n", test.name, test.compared, test.agreed,
@@ -80,7 +89,7 @@ std::string end_to_end_text(const EndToEndResult& result) {
         "than rounding moves them, {:.3g} model units;\nan RMS distance of {:.6g} model units: the same rounding, "
         "and the range of displacements times the root of the\nshare of farther points that was measured.\n\n"
         "  triangles: hardware {}, golden {}\n",
-        verdict(result.passed()), result.allowed.triangles, result.allowed_farther(), result.allowed.rounding,
+        verdict(result), result.allowed.triangles, result.allowed_farther(), result.allowed.rounding,
         result.allowed_rms_model(), result.hardware_triangles,
         result.bound_hit ? fmt::format("more than {}; its run was stopped there", result.bound)
                          : fmt::format("{} ({:+.4f} %)", result.golden_triangles, result.more_triangles()));
@@ -94,11 +103,11 @@ std::string setup_text(const SetupResult& result) {
     std::string text = fmt::format(
         "Set-up: {}. The host's settings compared with those that the golden model derives from the job; each "
         "value within\nthe bound of its format's rounding.\n\n  {:<22}{:>12}{:>10}{:>10}  {}\n",
-        verdict(result.passed()), "set by the host", "compared", "wrong", "of bound", "");
+        verdict(result), "set by the host", "compared", "wrong", "of bound", "");
     for (const SetupResult::Part& part : result.parts)
         text += fmt::format("  {:<22}{:>12}{:>10}{:>9.0f}%  {}\n", part.name, part.compared, part.wrong,
                             100 * part.worst_ratio, part.description);
-    if (!result.passed())
+    if (!result.first_wrong.empty())
         text += "\nFirst wrong:\n" + result.first_wrong + "\n";
     return text;
 }
@@ -107,7 +116,7 @@ std::string invariants_text(const InvariantResult& result) {
     std::string text = fmt::format(
         "Invariants: {}. The emitted mesh equals the bare datapath's, bit for bit, and is closed by\n"
         "descent. Violations must be 0; the kinds `rounding` and `input` are explained below.\n\n",
-        verdict(result.passed()));
+        verdict(result));
     for (const InvariantFigure& figure : invariant_figures(result))
         text += fmt::format("  {:<28}{:>12}  {:<10} {}\n", figure.name, figure.value, kind_name(figure.kind),
                             figure.description);
@@ -120,8 +129,8 @@ std::string work_text(const WorkResult& result) {
     std::string text = fmt::format(
         "Work conservation: {}. Each triangle arrived where expected, once and unaltered; each unit "
         "received\nwhat another sent.\n\n  triangles decided {}, equations {}, violations {}\n",
-        verdict(result.passed()), result.triangles, result.equations, result.violations);
-    if (!result.passed())
+        verdict(result), result.triangles, result.equations, result.violations);
+    if (!result.first_violation.empty())
         text += "\nFirst violation:\n" + result.first_violation + "\n";
     return text;
 }
@@ -129,9 +138,9 @@ std::string work_text(const WorkResult& result) {
 std::string reads_text(const ReadResult& result) {
     std::string text = fmt::format(
         "Reads: {}. Every table entry read was compared with the memory's contents.\n\n"
-        "  entries {}, wrong {}\n",
-        verdict(result.passed()), result.entries, result.wrong);
-    if (!result.passed())
+        "  entries {}, wrong {}, read but not compared {}\n",
+        verdict(result), result.entries, result.wrong, result.missed);
+    if (!result.first_wrong.empty())
         text += "\nFirst wrong:\n" + result.first_wrong + "\n";
     return text;
 }
@@ -245,6 +254,7 @@ std::string conformance_json(const Checks& checks) {
         json["reads"] = {{"passed", checks.reads->passed()},
                          {"entries", checks.reads->entries},
                          {"wrong", checks.reads->wrong},
+                         {"missed", checks.reads->missed},
                          {"first_wrong", checks.reads->first_wrong}};
     return json.dump(2) + "\n";
 }

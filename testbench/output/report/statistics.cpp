@@ -128,10 +128,23 @@ void area_figures(std::vector<Figure>& all, const Simulation& simulation) {
             if (value > 0)
                 c.add(unit.name + what, value, figure_unit, description);
         };
-        part("_multipliers", unit.multipliers, "multiplier", "that give a result every initiation interval");
+        part("_multipliers", unit.multiplier_count(), "multiplier", "that give a result every initiation interval");
+        if (!unit.multipliers.empty()) {
+            std::string widths;
+            for (auto k = unit.multipliers.rbegin(); k != unit.multipliers.rend(); ++k)
+                widths += fmt::format("{}{} of {} x {}", widths.empty() ? "" : ", ", k->second, k->first.first,
+                                      k->first.second);
+            c.add(unit.name + "_multiplier_widths", widths, "", "these by the bits of their operands");
+        }
+        part("_partial_products", unit.partial_product_bits(), "bit",
+             "of these multipliers: one for each bit of one operand and bit of the other");
         part("_register_bits", unit.register_bits, "bit", "input buffers, pipeline registers, state");
-        part("_memory_bits", unit.memory_bits, "bit",
-             "a table; the queue's capacity or, if unbounded, the most triangles that waited at a time");
+        if (unit.name == "triangle_queue")
+            c.add(unit.name + "_memory_bits", unit.memory_bits, "bit",
+                  "the queue's capacity; 0 if it is unbounded: triangle_queue.high_water_bytes is what the run needed");
+        else
+            part("_memory_bits", unit.memory_bits, "bit",
+                 "a table, or its cache, once for each port of a bank; the queue's capacity, unless it is unbounded");
         part("_ports", unit.ports, "port", "entries per cycle, all banks together");
     };
     for (const UnitArea& unit : units)

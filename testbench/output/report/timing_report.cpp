@@ -103,7 +103,7 @@ Bottleneck find_bottleneck(const Pipeline& pipeline, std::uint64_t cycles) {
 
 namespace {
 
-/// The unit that waited longest for a cache, if that is most of the time: what it waits for, and the keys that help.
+/// The unit that waited longest for a cache, if that is most of the time, and the cache.
 std::string wait_for_a_cache(const Pipeline& pipeline, std::uint64_t cycles) {
     std::string text;
     std::uint64_t longest = cycles / 2;
@@ -112,8 +112,8 @@ std::string wait_for_a_cache(const Pipeline& pipeline, std::uint64_t cycles) {
         if (share == nullptr || share->cycles <= longest || dynamic_cast<const TableCache*>(share->by) == nullptr)
             continue;
         longest = share->cycles;
-        text = fmt::format("{0} waits for {1} {2:.1f} %: timing.{1}_fills, timing.off_chip_bandwidth", unit_name(*unit),
-                           share->by->basename(), 100 * ratio(longest, cycles));
+        text = fmt::format("{} waits for {} {:.1f} %", unit_name(*unit), share->by->basename(),
+                           100 * ratio(longest, cycles));
     }
     return text;
 }
@@ -127,6 +127,56 @@ std::pair<const Unit*, std::uint64_t> longest_wait(const Pipeline& pipeline, con
                 longest = {unit, share.cycles};
     }
     return longest;
+}
+
+constexpr std::uint64_t most_ports = 64;      // timing.*_ports
+constexpr std::size_t most_normal_tests = 9;  // hardware.normal_tests
+constexpr double worth_raising = 1.05;        // times faster without the limit
+
+std::string off_chip_key(const Pipeline& pipeline) {
+    const OffChipMemory& memory = pipeline.off_chip_memory;
+    std::uint64_t requests = memory.activity().items_in();
+    for (const TableCache* cache : pipeline.caches())
+        requests += cache->fills();
+    // Twice the bandwidth saves nothing where a request takes a single cycle.
+    return memory.occupied_cycles() >= 2 * requests ? "timing.off_chip_bandwidth" : "";
+}
+
+/// The key of which twice the value relieves this unit; empty if there is none that surely does.
+std::string relieving_key(const Pipeline& pipeline, const Unit& unit) {
+    const auto ports = [](std::string table, std::uint64_t all) {
+        table.erase(std::min(table.find("_cache"), table.find("_for_tests")));
+        return 2 * all <= most_ports ? "timing." + table + "_ports" : "";
+    };
+    if (&unit == &pipeline.off_chip_memory)
+        return off_chip_key(pipeline);
+    if (const auto* memory = dynamic_cast<const TableMemory*>(&unit); memory != nullptr) {
+        const std::string cache = std::string(unit.basename()) + "_cache";
+        for (const TableCache* its : pipeline.caches())
+            if (its->basename() == cache)
+                return off_chip_key(pipeline);
+        return ports(std::string(unit.basename()) + "_for_tests", memory->slots_per_cycle());
+    }
+    if (dynamic_cast<const TableCache*>(&unit) != nullptr)
+        return ports(unit.basename(), 1);
+    const TessellationTests& tests = pipeline.tessellation_tests[0];
+    const auto& normal_tests = tests.normal_tests();
+    if (tests.family_sequence_tests != nullptr && 2 * normal_tests.size() <= most_normal_tests &&
+        std::find(normal_tests.begin(), normal_tests.end(), &unit) != normal_tests.end())
+        return "hardware.normal_tests";
+    return "";
+}
+
+/// The one key that relieves all units of the limit, if they hold up the others noticeably.
+std::string relieving_key(const Pipeline& pipeline, const Bottleneck& found) {
+    std::string key;
+    for (const Unit* unit : found.first.units) {
+        const std::string its = relieving_key(pipeline, *unit);
+        if (its.empty() || (!key.empty() && its != key))
+            return "";
+        key = its;
+    }
+    return found.bound() >= worth_raising ? key : "";
 }
 
 std::string binding_text(const Pipeline& pipeline, std::uint64_t cycles, const Bottleneck& found) {
@@ -145,6 +195,8 @@ std::string binding_text(const Pipeline& pipeline, std::uint64_t cycles, const B
         text += fmt::format("; without {} at most {:.1f} times faster, bounded by {}, {} {:.1f} %",
                             several ? "them" : "it", found.bound(), found.next.names(),
                             found.next.units.size() > 1 ? "which tie at" : "at", 100 * found.next.utilisation);
+    if (const std::string key = relieving_key(pipeline, found); !key.empty())
+        text += "; a larger " + key + " helps";
     return text;
 }
 
@@ -170,11 +222,8 @@ std::string latency_text(const Pipeline& pipeline, std::uint64_t cycles, const B
                  blocked = state_percent(get, State::blocked, cycles);
     std::string held_up = wait_for_a_cache(pipeline, cycles);
     if (held_up.empty())
-        held_up = starved > blocked
-                      ? fmt::format(
-                            "get_triangle is starved {:.1f} %: more base triangles, a higher hardware.queue_watermark",
-                            starved)
-                      : fmt::format("get_triangle is blocked {:.1f} %: larger buffers, timing.*_buffer", blocked);
+        held_up = starved > blocked ? fmt::format("get_triangle is starved {:.1f} %", starved)
+                                    : fmt::format("get_triangle is blocked {:.1f} %", blocked);
     const Unit& longest = longest_stay(pipeline);
     return fmt::format(
         "none: bound by latency; of the busiest ({}) {:.1f} % of the throughput is used; at most {:.1f} times faster "

@@ -76,7 +76,7 @@ void queue_figures(std::vector<Figure>& all, const Simulation& simulation, const
     FigureGroup group(all, "timing." + unit_name(queue));
     group.add("capacity", simulation.setup.design.queue.capacity, "triangle", "on chip; 0: unbounded");
     group.add("on_chip_high_water_mark", queue.on_chip_high_water_mark(), "triangle",
-              "most on chip, without one being spilled");
+              "most on chip, those on their way out included; the high-water mark, unless triangles were spilled");
     group.add("spilled", queue.spilled(), "triangle", "written to off-chip memory");
     group.add("refilled", queue.refilled(), "triangle", "read back");
     group.add("spill_bytes", (queue.spilled() + queue.refilled()) * entry, "byte", "both directions");

@@ -1,7 +1,12 @@
 #include <unistd.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <iomanip>
+#include <map>
+#include <nlohmann/json.hpp>
 #include <regex>
+#include <sstream>
 
 #include "testbench/tests/support/checkout.h"
 #include "testbench/tests/support/program_runner.h"
@@ -139,6 +144,113 @@ TEST_CASE("every command of the folders' READMEs works, and every file they link
         }
     }
     CHECK(commands > 10);
+}
+
+// The figures of the text, from runs: a row of the table of designs, or the words around a range over several jobs.
+TEST_CASE("the cycles that README.md and modules/README.md state are those of the runs") {
+    const TestFolder here;
+    struct Measured {
+        double per_triangle, per_edge, normal_tests;
+    };
+    std::map<std::string, Measured> known;
+    const auto measure = [&](const std::string& job, const Arguments& keys) {
+        Arguments command{"run", (source_folder() / "testbench/examples/jobs" / (job + ".toml")).string()};
+        command = command +
+                  set(Arguments{"check.golden=false", "check.end_to_end=false", "check.invariants=false",
+                                "check.work=false", "output.picture=false", "output.ply=false", "output.folder=out"} +
+                      keys);
+        std::string name;
+        for (const std::string& word : command)
+            name += word + " ";
+        if (const auto found = known.find(name); found != known.end())
+            return found->second;
+        succeed(command, here.path());
+        const auto figures = nlohmann::json::parse(read_all(here.path() / "out/statistics.json"));
+        const auto value = [&](const char* group, const char* figure) -> double {
+            return figures[group][figure]["value"];
+        };
+        return known[name] = {value("timing", "cycles_per_triangle"), value("timing", "cycles_per_edge"),
+                              value("useful_work", "normal_tests") / value("mesh", "triangles")};
+    };
+    const auto rounded = [](double value, int digits) {
+        std::ostringstream text;
+        text << std::fixed << std::setprecision(digits) << value;
+        return text.str();
+    };
+    std::string page;  // without line ends
+    for (const std::string& line : lines_of(read_all(source_folder() / "modules/README.md")))
+        page += (line.rfind("| ", 0) == 0 ? "\n" : " ") + line;
+    const auto states = [&](const std::string& words) {
+        INFO(words);
+        CHECK(page.find(words) != std::string::npos);
+    };
+    const Arguments cheap{"hardware.test_order=cheap_first"}, final_edges{"hardware.final_edges=true"},
+        one_texel = cheap + final_edges + Arguments{"hardware.one_texel_from_map=true"},
+        banks{"timing.summed_height_table_banks=8"}, by_xor{"timing.summed_height_table_interleave=xor"},
+        window{"timing.summed_height_table_window=12"}, modern{"hardware.design=modern"},
+        two_tests = modern + Arguments{"hardware.normal_tests=2", "timing.normal_map_ports=3"},
+        eight_machines = modern + Arguments{"hardware.machines=8"},
+        families =
+            one_texel + banks + by_xor + window +
+            Arguments{"hardware.work=family", "hardware.queue_order=lifo", "timing.pass_or_tessellate_buffer=32"};
+    const auto row = [&](const char* begins, const Arguments& keys, int digits) {
+        const std::size_t at = page.find(std::string("\n| ") + begins), end = page.find('\n', at + 1);
+        REQUIRE(at != std::string::npos);
+        const std::string figure = " | " + rounded(measure("half_donut", keys).per_triangle, digits) + " |";
+        INFO(begins << figure);
+        CHECK(page.substr(at, end - at).find(figure) != std::string::npos);
+    };
+    row("`test_order = \"parallel\"", {}, 1);
+    row("`final_edges = true`", final_edges, 1);
+    row("`test_order = \"cheap_first\"`", cheap, 1);
+    row("both", cheap + final_edges, 1);
+    row("and `one_texel_from_map", one_texel, 1);
+    row("and `[timing] summed_height_table_banks = 8`", one_texel + banks + by_xor + window, 1);
+    row("and `work = \"family\"`", families, 1);
+    row("and `edge_lanes = 3`", modern, 2);
+    row("and `normal_tests = 2`", two_tests, 2);
+    row("`design = \"modern\"`, `machines = 8`", eight_machines, 2);
+
+    std::vector<std::string> jobs{"crater_lake_24", "crater_lake_704", "head", "teapot"};
+    const auto range = [&](double Measured::*figure, const Arguments& keys) {
+        std::vector<double> all;
+        for (const std::string& job : jobs)
+            all.push_back(measure(job, keys).*figure);
+        const auto [least, most] = std::minmax_element(all.begin(), all.end());
+        return rounded(*least, 2) + " to " + rounded(*most, 2);
+    };
+    const auto per_triangle = [&](const Arguments& keys) { return range(&Measured::per_triangle, keys); };
+    states("that design takes " + per_triangle(modern) + " cycles per finished triangle, with two Normal Tests");
+    states("(the last row but one) " + per_triangle(two_tests) + ", with eight machines " +
+           per_triangle(eight_machines) + ".");
+    const auto one = [&](const std::string& job, const Arguments& keys) {
+        return rounded(measure(job, keys).per_triangle, 2);
+    };
+    states("`crater_lake_rank` takes " + one("crater_lake_rank", modern) + ", " + one("crater_lake_rank", two_tests) +
+           " and " + one("crater_lake_rank", eight_machines) + ":");
+    const Arguments large{"map.width=1024", "map.height=1024"};
+    states("needs " + rounded(measure("half_donut", large + modern).normal_tests, 2) +
+           " Normal Tests per triangle, takes " + one("half_donut", large + modern) + " and " +
+           one("half_donut", large + two_tests) + ".");
+    const Arguments bilinear{"hardware.displacement_filter=bilinear"},
+        ports{"timing.displacement_map_ports=4", "timing.normal_map_ports=4"};
+    states("They take " + rounded(measure("half_donut", bilinear).per_triangle, 1) + " cycles each");
+    states("; " + one("half_donut", bilinear + modern) +
+           " in `design = \"modern\"`, now bound by the normal map, and " +
+           one("half_donut", bilinear + modern + ports) + " with");
+    jobs.emplace_back("half_donut");
+    const auto per_edge = [&](const Arguments& keys) { return range(&Measured::per_edge, banks + keys); };
+    states("an edge takes " + per_edge(by_xor + window) + " cycles on `half_donut` and the four jobs above; with " +
+           "interleaving by entry " + per_edge(window) + ", and without the window " + per_edge(by_xor) + " and " +
+           per_edge({}) + ".");
+
+    // README.md: "a quarter of the cycles", three units "save no more", and "in a fortieth"
+    const Arguments four{"timing.summed_height_table_ports=4"};
+    const double paper = measure("half_donut", {}).per_triangle, quarter = measure("half_donut", four).per_triangle;
+    CHECK(quarter / paper == Approx(1.0 / 4).epsilon(0.01));
+    CHECK(measure("half_donut", four + Arguments{"hardware.tests_units=3"}).per_triangle ==
+          Approx(quarter).epsilon(0.01));
+    CHECK(paper / measure("half_donut", modern).per_triangle == Approx(40).epsilon(0.05));
 }
 
 TEST_CASE("every test that modules/README.md names exists") {

@@ -222,6 +222,29 @@ TEST_CASE("sweep: a run during which an input changes has no result") {
                Contains(changed + " was changed since this began; start it again"));
 }
 
+TEST_CASE("sweep: an axis along which no figure changes is named, on the page too") {
+    if (!sweeps_run())
+        return;
+    const Checkout checkout;
+    const auto axis = [](const std::string& keys) { return "[[axis]]\n" + keys; };
+    const std::string sweep_of = replaced(small, small.substr(small.find("[[axis]]")), ""),
+                      ports = axis("key = \"timing.summed_height_table_ports\"\nvalues = [1, 2]\n"),
+                      idle = axis("key = \"timing.rank_table_ports\"\nvalues = [1, 4]\n"),
+                      pair = axis(
+                          "keys = [\"timing.off_chip_latency\", \"timing.off_chip_buffer\"]\n"
+                          "values = [[40, 4], [50, 8]]\n"),
+                      one = axis("key = \"hardware.queue_order\"\nvalues = [\"lifo\"]\n");
+    const ProgramEnd end = sweep(checkout, sweep_of + idle + ports + pair + one);
+    INFO(end.text());
+    REQUIRE(end.exit_code == 0);
+    const std::string page = read_all(checkout.root() / "runs/sweeps/small/index.html");
+    for (const char* const name : {"timing.rank_table_ports", "timing.off_chip_latency, timing.off_chip_buffer"}) {
+        CHECK_THAT(end.err, Contains("axis " + std::string(name) + " changed no figure"));
+        CHECK_THAT(page, Contains("axis " + std::string(name) + " changed no figure"));
+    }
+    CHECK_THAT(end.err, !Contains("axis timing.summed_height_table_ports") && !Contains("axis hardware.queue_order"));
+}
+
 TEST_CASE("sweep: a run that does not end is a row, and is tried again") {
     if (!sweeps_run())
         return;

@@ -1,5 +1,7 @@
 #include <catch2/catch.hpp>
+#include <regex>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "testbench/tests/support/program_runner.h"
@@ -18,8 +20,144 @@ Arguments timed_run(const std::string& folder, const Arguments& settings) {
 }
 
 const Arguments small{"map.width=64", "map.height=64", "output.picture=false"};
+const Arguments unchecked{"check.golden=false", "check.end_to_end=false", "check.invariants=false",
+                          "check.work=false",   "output.picture=false",   "output.ply=false"};
 
 }  // namespace
+
+// Designs that differ in what limits them; those of `none` are bound by latency, or by units that tie.
+TEST_CASE("timed run: twice the key that the bottleneck names takes fewer cycles") {
+    const TestFolder here;
+    const auto none = [](const Arguments& settings) { return std::pair{settings, std::string{}}; };
+    const auto ports = [](const Arguments& settings, const std::string& table) {
+        return std::pair{settings, "timing." + table + "_ports"};
+    };
+    const Arguments banks{"timing.summed_height_table_banks=8", "timing.summed_height_table_interleave=xor"};
+    for (const auto& [settings, key] : std::vector<std::pair<Arguments, std::string>>{
+             ports({}, "summed_height_table"),
+             ports({"hardware.tests_units=3"}, "summed_height_table"),
+             ports({"timing.summed_height_table_ports=3"}, "summed_height_table"),
+             ports(banks, "summed_height_table"),
+             none(banks + Arguments{"hardware.test_order=cheap_first"}),
+             ports({"hardware.test_order=cheap_first", "hardware.final_edges=true"}, "summed_height_table"),
+             ports({"timing.summed_height_table_cache_bytes=16384"}, "summed_height_table"),
+             ports({"hardware.queue_capacity=8", "hardware.queue_order=lifo"}, "summed_height_table"),
+             ports({"hardware.height_test=mipmap"}, "mipmap_table"),
+             none({"hardware.design=modern", "timing.normal_map_ports=1"}),
+             ports({"timing.summed_height_table_ports=16", "timing.displacement_map_width=1",
+                    "hardware.displacement_filter=bilinear"},
+                   "displacement_map"),
+             {{"hardware.design=modern"}, "hardware.normal_tests"},
+             {{"timing.off_chip_bandwidth=1", "hardware.queue_capacity=4"}, "timing.off_chip_bandwidth"},
+             {{"timing.off_chip_bandwidth=1", "timing.summed_height_table_cache_bytes=256"},
+              "timing.off_chip_bandwidth"},
+             none({"timing.summed_height_table_ports=16"}),
+             none({"timing.transform_interval=20"}),
+             none({"timing.summed_height_table_cache_bytes=256", "timing.summed_height_table_ports=4"}),
+             none({"hardware.height_test=curvature"}),
+             none({"hardware.design=modern", "hardware.machines=8"})}) {
+        const auto run = [&](const Arguments& more) {
+            succeed(timed_run("out", unchecked + settings + more), here.path());
+            return RunFolder(here.path() / "out");
+        };
+        const RunFolder once = run({});
+        const std::string text = once.statistics["timing"]["bottleneck_in_words"]["value"];
+        INFO(text);
+        std::smatch named;
+        const bool names_one = std::regex_search(text, named, std::regex(R"(((hardware|timing)\.\w+))"));
+        CHECK((names_one ? named[1].str() : std::string{}) == key);
+        if (!names_one)
+            continue;
+        const std::string dumped = succeed(Arguments{"run", "--dump-config"} + set(settings), here.path()).out;
+        std::smatch found;
+        const std::string leaf = key.substr(key.find('.') + 1);
+        REQUIRE(std::regex_search(dumped, found, std::regex("\n" + leaf + R"( = (\d+))")));
+        const RunFolder twice = run({key + "=" + std::to_string(2 * std::stoul(found[1]))});
+        CHECK(twice.count("timing", "cycles") < once.count("timing", "cycles"));
+    }
+}
+
+// Each value that a note names is set, and is then built as it is: no note, and the same cycles and area, or a larger
+// cache.
+TEST_CASE("timed run: a size that is rounded is noted with sizes that are not, and these have no note") {
+    const TestFolder here;
+    const auto run = [&](const Arguments& settings) {
+        const ProgramEnd end = succeed(timed_run("out", unchecked + small + settings), here.path());
+        std::vector<std::string> notes;
+        for (const std::string& line : lines_of(end.out))
+            if (line.rfind("  note: timing.", 0) == 0 || line.rfind("  note: hardware.", 0) == 0)
+                notes.push_back(line);
+        return std::pair{notes, RunFolder(here.path() / "out")};
+    };
+    const auto settings_in = [](const std::string& text) {
+        Arguments settings;
+        const std::regex setting(R"((timing\.\w+) = (\d+))");
+        for (std::sregex_iterator it(text.begin(), text.end(), setting), end; it != end; ++it)
+            settings.push_back((*it)[1].str() + "=" + (*it)[2].str());
+        return settings;
+    };
+    const std::string sums = "timing.summed_height_table_", normals = "timing.normal_map_";
+    for (const Arguments& settings : std::vector<Arguments>{{sums + "cache_bytes=320"},
+                                                            {sums + "cache_bytes=448"},
+                                                            {sums + "cache_bytes=1000"},
+                                                            {sums + "cache_bytes=1"},
+                                                            {sums + "cache_bytes=200", sums + "cache_ways=64"},
+                                                            {sums + "cache_bytes=1024", sums + "line_bytes=30"},
+                                                            {sums + "cache_bytes=1073741824"},
+                                                            {normals + "cache_bytes=4096"},
+                                                            {normals + "cache_bytes=600", normals + "line_bytes=60"},
+                                                            {"timing.displacement_map_cache_bytes=100"},
+                                                            {sums + "width=3"},
+                                                            {sums + "width=64"},
+                                                            {normals + "width=5"}}) {
+        CAPTURE(settings);
+        const auto [notes, rounded] = run(settings);
+        REQUIRE(notes.size() == 1);
+        INFO(notes[0]);
+        const std::size_t larger = notes[0].find("; the next larger: "), same = notes[0].find("; the same: ");
+        const std::size_t builds = notes[0].rfind("timing.");
+        const std::string advice = same != std::string::npos
+                                       ? notes[0].substr(same, larger == std::string::npos ? larger : larger - same)
+                                       : notes[0].substr(builds);
+        const auto [no_notes, exact] = run(settings + settings_in(advice));
+        CHECK(no_notes.empty());
+        CHECK(exact.count("timing", "cycles") == rounded.count("timing", "cycles"));
+        CHECK(exact.count("area", "total_memory_bits") == rounded.count("area", "total_memory_bits"));
+        if (larger == std::string::npos)
+            continue;
+        const auto [none, next] = run(settings + settings_in(notes[0].substr(larger)));
+        CHECK(none.empty());
+        CHECK(next.count("area", "total_memory_bits") > rounded.count("area", "total_memory_bits"));
+    }
+}
+
+TEST_CASE("timed run: a key without effect in the design is noted, and has none") {
+    const TestFolder here;
+    const auto run = [&](const Arguments& settings) {
+        const ProgramEnd end = succeed(timed_run("out", unchecked + small + settings), here.path());
+        return std::pair{end.out, RunFolder(here.path() / "out").statistics.dump()};
+    };
+    const auto without_effect = [&](const Arguments& design, const std::string& key, const std::string& value) {
+        INFO(key << " " << value);
+        const auto [plain_text, plain] = run(design);
+        CHECK_THAT(plain_text, !Contains("has no effect"));
+        const auto [text, figures] = run(design + Arguments{key + "=" + value});
+        CHECK_THAT(text, Contains("note: " + key + " = " + value + " has no effect: "));
+        CHECK(figures == plain);
+    };
+    without_effect({}, "timing.rank_table_ports", "2");
+    without_effect({}, "timing.curvature_test_latency", "9");
+    without_effect({"hardware.height_test=mipmap"}, "timing.summed_height_table_ports", "2");
+    without_effect({}, "timing.normal_map_cache_ways", "8");
+    without_effect({}, "timing.summed_height_table_line_bytes", "128");
+    without_effect({}, "timing.off_chip_bandwidth", "1");
+    without_effect({}, "timing.edges_in_sequence", "8");
+    without_effect({}, "timing.highlight_test_latency", "7");
+    without_effect({}, "timing.stalls_seed", "5");
+    without_effect({}, "hardware.off_chip_triangles", "5");
+    without_effect({"hardware.design=modern", "hardware.height_test=rank", "mesh.source=lattice", "mesh.spacing=16"},
+                   "timing.summed_height_table_latency", "3");
+}
 
 TEST_CASE("timed run: a full queue that stalls ends with exit code 3 and names the waiting units") {
     const TestFolder here;

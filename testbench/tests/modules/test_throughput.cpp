@@ -160,6 +160,57 @@ const CaseTable rates(
 
 }  // namespace
 
+// The family design of three lanes. Each base triangle is a family, and each triangle that splits: 18 * (1 + 4 + 16 + 64)
+// of them with three midpoints, nine new edges and four children; base triangles have three edges and vertices of their
+// own. Edges of triangles of generation 4 fail the Generation Test, so that only the others go to the Normal Test.
+namespace {
+
+constexpr std::uint64_t own = 3 * base, vertices = own + 3 * splits, new_edges = own + 9 * splits;
+constexpr std::uint64_t requesting = own + 9 * 18 * (1 + 4 + 16);
+
+struct Interval {
+    std::string name;     ///< of the unit's key, and how many there are
+    std::uint64_t items;  ///< of each copy of the unit
+    std::string settings = "";
+    std::uint64_t idle = 1000;  ///< most cycles that it cannot work: to fill and drain, unless stated
+};
+
+const CaseTable intervals(
+    "the modern design, one item every 40 cycles: ",
+    {
+        Interval{"get_triangle", vertices},
+        {"calculate_new_p", vertices},
+        {"displace_vertex", vertices},
+        {"transform", vertices},
+        {"calculate_new_u", new_edges / 3},
+        {"tex_coord_test", new_edges / 3},
+        {"view_test", new_edges / 3},
+        {"normal_test", requesting},
+        {"normal_test, two of them", requesting / 2, "hardware.normal_tests=2"},
+        {"summed_height_test", requesting, "tests.normal=false"},
+        // A family's children are lit or queued: one output is idle while only the other has any left.
+        {"pass_or_tessellate", finished, "", 40 * finished / 10},
+        {"tessellation", new_edges / 3},
+        // Nothing is queued while families are tested whose children do not split.
+        {"triangle_queue", splits, "", 40 * splits / 3},
+        {"lighting", finished},
+    },
+    [](const Interval& row) {
+        constexpr std::uint64_t interval = 40;
+        const std::string unit_name = row.name.substr(0, row.name.find(','));
+        TimedRun simulation(full_split("hardware.design=modern timing." + unit_name + "_interval=40 " + row.settings));
+        CHECK(simulation.pipeline.pass_or_tessellate.counts().finished == finished);
+        CHECK(simulation.cycles() >= interval * (row.items - 1));
+        CHECK(simulation.cycles() <= interval * row.items + row.idle);
+        std::uint64_t most = 0;
+        for (const Unit* unit : simulation.pipeline.units())
+            if (std::string(unit->basename()).rfind(unit_name, 0) == 0)
+                most = std::max(most, unit->occupied_cycles());
+        CHECK(most == interval * row.items);
+    });
+
+}  // namespace
+
 // One port takes 3 edges x 3 rectangles x 4 entries = 36 cycles per pass, with a single pause: the first triangle's
 // third edge arrives in cycle 32 (test_one_triangle.cpp), 3 after the first two's 24 entries have been read in 5 to 28.
 // From then on the next triangle's edges wait when one is complete.

@@ -131,10 +131,11 @@ inline void require_timed_identities(const Simulation& simulation, const HostedM
     CHECK_FALSE(p.clock.stalled());
     CHECK(p.passes_under_way() == 0);
     CHECK(p.triangle_queue.waiting() == 0);
-    CHECK(p.triangle_queue.on_chip_high_water_mark() <= p.triangle_queue.high_water_mark());
+    const std::size_t most = p.triangle_queue.high_water_mark(), on_chip = p.triangle_queue.on_chip_high_water_mark();
+    CHECK((p.triangle_queue.spilled() == 0 ? on_chip == most : on_chip <= most));
     const std::size_t capacity = simulation.setup.design.queue.capacity;
     if (capacity != 0)
-        CHECK(p.triangle_queue.on_chip_high_water_mark() <= capacity);
+        CHECK(on_chip <= capacity + register_stages(simulation.setup.design.timing.triangle_queue));
     CHECK(p.pass_or_tessellate.most_incomplete() <= simulation.setup.design.timing.pass_or_tessellate.buffer);
     const std::uint64_t slots = p.height_table.slots_taken();
     CHECK(slots <= simulation.cycles() * p.height_table.slots_per_cycle());

@@ -66,12 +66,19 @@ class Sink : public sc_core::sc_module, public CycleProcess {
         in.clocked_by(clock, *this, 1, stalls);
     }
 
+    /// Takes nothing before this cycle.
+    void open_at(std::uint64_t cycle) { opening_ = cycle; }
+
   private:
     void b_transport(Payload& payload, sc_core::sc_time& delay) {
         items.push_back(payload);
         delays.push_back(delay);
     }
     void step() override {
+        if (clock_.cycle() < opening_) {
+            clock_.wake_at(*this, opening_);
+            return;
+        }
         while (!in.empty()) {
             items.push_back(in.front());
             cycles.push_back(clock_.cycle());
@@ -80,6 +87,7 @@ class Sink : public sc_core::sc_module, public CycleProcess {
     }
 
     CycleScheduler& clock_;
+    std::uint64_t opening_ = 0;
 };
 
 /// Calls a test's function when the clock calls it.

@@ -319,6 +319,8 @@ TEST_CASE("the golden run passes within the allowed differences in either direct
     result.hardware_triangles = 1000;
     result.golden_triangles = 1000;
     result.allowed = {1, 0.5, 0};
+    CHECK_FALSE(result.passed());  // nothing was measured
+    result.hardware_to_golden.measured = result.golden_to_hardware.measured = 1;
     CHECK(result.passed());
     for (const std::uint64_t golden : {990U, 1010U}) {
         result.golden_triangles = golden;

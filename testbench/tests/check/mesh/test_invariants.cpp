@@ -276,6 +276,8 @@ TEST_CASE("single triangles are counted in their figures") {
 
 TEST_CASE("each violation counts, effects of rounding and of the input do not, the figures are complete") {
     InvariantResult result;
+    CHECK_FALSE(result.passed());  // nothing was checked
+    result.triangles = result.edges = 1;
     result.collapsed = result.turned_over = result.displaced_collapsed = 5;
     result.open_texture_seam_edges = result.open_crease_edges = 2;
     CHECK(result.passed());

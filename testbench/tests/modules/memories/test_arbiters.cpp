@@ -75,6 +75,28 @@ TEST_CASE("banked ports: entry k is in bank k mod banks, and banks work independ
     CHECK(p.ports.occupied_cycles() == 4);  // bank 0's
 }
 
+// The busiest bank's ports, not the mean of all banks: it alone limits what the table can serve.
+TEST_CASE("banked ports: the occupied cycles are the busiest bank's slots by its ports") {
+    Ports two_by_four({2, 4, 1, 2});  // two ports in each of four banks, two cycles per entry
+    two_by_four.serve({0, 4, 8, 12}, 0);
+    two_by_four.serve({1, 5, 2, 3}, 10);
+    two_by_four.serve({16, 20}, 20);
+    CHECK(two_by_four.ports.slots_taken() == 2 * (4 + 4 + 2));
+    CHECK(two_by_four.ports.occupied_cycles() == 2 * 6 / 2);
+    Ports even({1, 4, 1});
+    for (std::uint64_t k = 0; k < 5; ++k)
+        even.serve({0, 1, 2, 3}, k);
+    CHECK(even.ports.occupied_cycles() == 5);
+    Ports exclusive({3, 2, 1, 0, 1, Interleave::exclusive_or});
+    for (std::uint64_t k = 0; k < 6; ++k)
+        exclusive.serve({0, 1, 16, 17}, 10 * k);  // columns 0 and 1 of rows 0 and 1: two in each bank
+    CHECK(exclusive.ports.slots_taken() == 24);
+    CHECK(exclusive.ports.occupied_cycles() == 12 / 3);
+    exclusive.ports.assign_slots({7, 30});
+    CHECK(exclusive.ports.slots_taken() == 37);
+    CHECK(exclusive.ports.occupied_cycles() == 30 / 3);
+}
+
 TEST_CASE("banked ports: a window lets requests start while others wait for a bank") {
     Ports p({1, 2, 1, 0, 1, Interleave::entry, 2});
     CHECK(p.serve({0, 2, 4}, 10) == 12 + 1);  // bank 0: 10, 11, 12

@@ -315,7 +315,6 @@ TEST_CASE("schedule: the queue's levels and item times") {
     CHECK(times.out == std::vector<Cycle>{5, 10, 11});
     CHECK(source.item_cycles() == 1 + 5 + 5);
     CHECK(source.highest() == 2);
-    CHECK(source.highest_in_store() == 1);
     CHECK(source.history().highest()[6] == 2);
     CHECK(source.states().cycles_in(State::blocked) == 4);
 }

@@ -185,7 +185,7 @@ TEST_CASE("bottleneck: the only unit that worked has no next limit") {
     CHECK(bottleneck_text(m.pipeline, cycles) == "lighting: 100.0 % of its throughput is used");
 }
 
-TEST_CASE("bottleneck: below 85 % latency binds, and a remedy is suggested") {
+TEST_CASE("bottleneck: below 85 % latency binds, and no key is named, since none surely helps") {
     Machine m;
     work_on(m.pipeline.lighting, 849);
     work_on(m.pipeline.calculate_new_p, 845);
@@ -197,7 +197,7 @@ TEST_CASE("bottleneck: below 85 % latency binds, and a remedy is suggested") {
     Activity& get = m.pipeline.get_triangle.activity();
     get.item_in(0);
     get.item_out(900);  // waiting for other units
-    SECTION("more triangles, if none waits") {
+    SECTION("Get Triangle is starved") {
         get.set(0, State::blocked, &m.pipeline.calculate_new_p);
         get.set(200, State::starved);
         get.finish(cycles);
@@ -205,22 +205,21 @@ TEST_CASE("bottleneck: below 85 % latency binds, and a remedy is suggested") {
               "none: bound by latency; of the busiest (calculate_new_p and lighting) 84.9 % of the "
               "throughput is "
               "used; at most 1.2 times faster with more triangles in flight "
-              "(get_triangle is starved 80.0 %: more base triangles, a higher hardware.queue_watermark) or "
+              "(get_triangle is starved 80.0 %) or "
               "shorter latencies (an item stays 27.5 cycles in transform)");
     }
-    SECTION("larger buffers, if Get Triangle is blocked") {
+    SECTION("Get Triangle is blocked") {
         get.set(0, State::blocked, &m.pipeline.calculate_new_p);
         get.set(600, State::starved);
         get.finish(cycles);
-        CHECK_THAT(bottleneck_text(m.pipeline, cycles),
-                   Contains("(get_triangle is blocked 60.0 %: larger buffers, timing.*_buffer)"));
+        CHECK_THAT(bottleneck_text(m.pipeline, cycles), Contains("(get_triangle is blocked 60.0 %)"));
     }
     CHECK_FALSE(find_bottleneck(m.pipeline, cycles).binding);
     work_on(m.pipeline.lighting, 1, 950);
     CHECK(find_bottleneck(m.pipeline, cycles).binding);
 }
 
-TEST_CASE("bottleneck: below 85 %, a unit that waits for a cache most of the time names the cache's keys") {
+TEST_CASE("bottleneck: below 85 %, a unit that waits for a cache most of the time is named") {
     Job job = timed_job();
     job.timing.summed_height_table.cache.bytes = 1024;
     Machine m(job);
@@ -229,8 +228,7 @@ TEST_CASE("bottleneck: below 85 %, a unit that waits for a cache most of the tim
     waiting.set(0, State::waiting_for_memory, m.pipeline.height_table_cache.get());
     waiting.finish(501);
     CHECK_THAT(bottleneck_text(m.pipeline, cycles),
-               Contains("(tessellation_tests_0.summed_height_test waits for summed_height_table_cache 50.1 %: "
-                        "timing.summed_height_table_cache_fills, timing.off_chip_bandwidth)"));
+               Contains("(tessellation_tests_0.summed_height_test waits for summed_height_table_cache 50.1 %)"));
 }
 
 TEST_CASE("bottleneck: of five units that tie one is named") {

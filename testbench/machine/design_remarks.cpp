@@ -1,0 +1,141 @@
+#include "testbench/machine/design_remarks.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <string_view>
+#include <utility>
+
+#include "modules/memories/line_cache.h"
+#include "modules/timing/height_test_kind.h"
+#include "testbench/job/design_preset.h"
+#include "testbench/job/job_keys.h"
+#include "testbench/job/toml_text.h"
+
+namespace tessera {
+
+namespace {
+
+struct SizedTable {
+    std::string name;
+    const MemoryTiming& timing;
+    const datapath::TableLayout& layout;
+};
+
+std::vector<SizedTable> sized_tables(const MachineSetup& setup) {
+    const Timing& t = setup.design.timing;
+    const datapath::Registers& r = setup.registers;
+    const HeightTestKind& kind = kind_of(r.formats.height_test);
+    return {{"displacement_map", t.displacement_map, r.displacement_map},
+            {"normal_map", t.normal_map, r.normal_map},
+            {kind.table, t.*kind.table_timing, r.height_table}};
+}
+
+std::string cache_remark(const SizedTable& table) {
+    const CacheTiming& asked = table.timing.cache;
+    if (asked.bytes == 0)
+        return {};
+    const CacheShape built(asked, table.layout);
+    if (built.whole_table)
+        return asked.bytes <= built.bytes()
+                   ? ""
+                   : fmt::format(
+                         "timing.{0}_cache_bytes = {1}: the table has {2} bytes, and a cache of {3} holds it; "
+                         "timing.{0}_cache_bytes = {3} builds the same",
+                         table.name, asked.bytes, table.layout.bytes(), built.bytes());
+    if (built.bytes() == asked.bytes && built.ways == asked.ways && built.line_bytes == asked.line_bytes)
+        return {};
+    std::string text = fmt::format(
+        "timing.{0}_cache_bytes = {1}, timing.{0}_line_bytes = {2}, timing.{0}_cache_ways = {3}: the cache is built with "
+        "{4} bytes, {5} {6} of {7} {8} of {9} bytes",
+        table.name, asked.bytes, asked.line_bytes, asked.ways, built.bytes(), built.sets,
+        built.sets == 1 ? "set" : "sets", built.ways, built.ways == 1 ? "line" : "lines", built.line_bytes);
+    // With these values nothing is rounded.
+    const auto values = [&](std::uint64_t sets) {
+        std::string keys = fmt::format("timing.{}_cache_bytes = {}", table.name, sets * built.ways * built.line_bytes);
+        if (built.line_bytes != asked.line_bytes)
+            keys += fmt::format(", timing.{}_line_bytes = {}", table.name, built.line_bytes);
+        if (built.ways != asked.ways)
+            keys += fmt::format(", timing.{}_cache_ways = {}", table.name, built.ways);
+        return keys;
+    };
+    text += "; the same: " + values(built.sets);
+    if (built.bytes() != asked.bytes)
+        text += "; the next larger: " + values(built.sets + 1);
+    return text;
+}
+
+std::string width_remark(const SizedTable& table) {
+    const unsigned entry = table.layout.entry_bytes, width = table.timing.width;
+    if (width == 0)
+        return {};
+    const unsigned cycles = (entry + width - 1) / width, same = (entry + cycles - 1) / cycles;
+    return same == width ? ""
+                         : fmt::format(
+                               "timing.{0}_width = {1}: an entry of {2} bytes takes {3} {4} of a port, as with "
+                               "timing.{0}_width = {5}",
+                               table.name, width, entry, cycles, cycles == 1 ? "cycle" : "cycles", same);
+}
+
+/// Keys, by the beginnings of their names, that have no effect; and why.
+struct Idle {
+    std::vector<std::string> keys;
+    std::string because;
+};
+
+std::vector<Idle> idle_keys(const Job& job, const MachineSetup& setup) {
+    const HeightTestKind& kind = kind_of(setup.registers.formats.height_test);
+    const Design& design = setup.design;
+    std::vector<Idle> idle;
+    const auto unless = [&](bool used, std::vector<std::string> keys, std::string because) {
+        if (!used)
+            idle.push_back({std::move(keys), std::move(because)});
+    };
+    for (const HeightTestKind& other : height_test_kinds)
+        unless(&other == &kind, {fmt::format("timing.{}_", other.table), fmt::format("timing.{}_", other.unit)},
+               fmt::format("hardware.height_test = \"{}\"", kind.name));
+    bool off_chip = design.queue.capacity > 0 && design.queue.overflow == QueueOverflow::spill;
+    for (const SizedTable& table : sized_tables(setup)) {
+        const bool cached = table.timing.cache.bytes > 0;
+        off_chip |= cached;
+        unless(cached,
+               {"timing." + table.name + "_line_bytes", "timing." + table.name + "_cache_ways",
+                "timing." + table.name + "_cache_fills"},
+               "timing." + table.name + "_cache_bytes = 0");
+    }
+    unless(off_chip, {"timing.off_chip_"}, "nothing is off chip: no table has a cache, and the queue does not spill");
+    unless(design.queue.capacity > 0, {"hardware.queue_overflow", "hardware.off_chip_triangles"},
+           "hardware.queue_capacity = 0");
+    unless(design.test_order == TestOrder::cheap_first, {"timing.edges_in_sequence"},
+           "hardware.test_order = \"parallel\"");
+    unless(setup.registers.tests.highlight_test, {"timing.highlight_test_latency"}, "tests.highlight = false");
+    unless(job.timing.stalls.per_mille > 0, {"timing.stalls_"}, "timing.stalls_per_mille = 0");
+    return idle;
+}
+
+}  // namespace
+
+std::vector<std::string> design_remarks(const Job& job, const MachineSetup& setup) {
+    std::vector<std::string> remarks;
+    if (job.mode != Mode::timed)
+        return remarks;
+    for (const SizedTable& table : sized_tables(setup))
+        for (std::string& remark : std::vector{cache_remark(table), width_remark(table)})
+            if (!remark.empty())
+                remarks.push_back(std::move(remark));
+    Job preset;
+    preset.hardware.design = job.hardware.design;
+    apply_design(preset);
+    for (const Idle& idle : idle_keys(job, setup))
+        for (const char* const name : {"hardware", "timing"})
+            for (const Key& key : find_table(name)->keys) {
+                const auto begins = [&](const std::string& with) { return key.name.rfind(with, 0) == 0; };
+                const std::string value = toml_value(key.get(job));
+                if (std::any_of(idle.keys.begin(), idle.keys.end(), begins) && value != toml_value(key.get(preset)))
+                    remarks.push_back(fmt::format("{} = {} has no effect: {}", key.name, value, idle.because));
+            }
+    return remarks;
+}
+
+}  // namespace tessera

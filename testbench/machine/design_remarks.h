@@ -1,0 +1,14 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "testbench/job/job.h"
+#include "testbench/machine/machine_setup.h"
+
+namespace tessera {
+
+/// One sentence for each key of timed mode whose value is not built as it is, or that has no effect in this design
+/// though it differs from its default. None in functional mode.
+std::vector<std::string> design_remarks(const Job& job, const MachineSetup& setup);
+
+}  // namespace tessera
