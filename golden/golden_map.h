@@ -18,8 +18,9 @@ enum class AddressMode { clamp, repeat };
 struct RankTable {
     std::int64_t columns = 0, rows = 0;
     std::vector<std::uint16_t> ranks, bounds;
-    std::vector<std::uint8_t> radii;  ///< codes; present with bounds that depend on distance
-    int highest_bound_threshold = 0;  ///< largest threshold for which the bounds hold
+    std::vector<std::uint8_t> radii;   ///< codes; present with bounds that depend on distance
+    int highest_bound_threshold = 0;   ///< largest threshold for which the bounds hold
+    std::vector<std::uint32_t> order;  ///< entries of the midpoints, in the order of their bisection
 };
 
 /// An entry of the Curvature Table (4.8) for a square of 2^l texels, in codes: | xx u^2 + xy u v + yy v^2 | is the
@@ -58,6 +59,8 @@ class Map {
 
     /// The code in the displacement map.
     double code(std::size_t texel) const { return heights_.empty() ? codes_[texel] : heights_[texel]; }
+    /// The code that everything but displacements is derived from.
+    double given_code(std::size_t texel) const { return codes_[texel]; }
     /// N_d; flat, (0, 0, 1), until derive_normals() or set_normals() is called.
     glm::dvec3 normal(std::size_t texel) const;
     /// dh/du and dh/dv by central differences; h is the displacement in world units (see derive_normals()). A clamped

@@ -84,7 +84,7 @@ double bound_threshold(const Scene& scene) {
         const double pixels = world_per_code(scene) * secant * (focal * secant + scene.bound_threshold);
         return scene.bound_bits == 0 ? 0 : seen_threshold(8 + std::log2(scene.bound_threshold / pixels), 5);
     }
-    return on_log_scale(scene.bound_threshold * scene.highest_code, 8, 5, scene.bound_bits);
+    return on_log_scale(scene.bound_threshold * scene.highest_code - scene.code_rounding, 8, 5, scene.bound_bits);
 }
 
 Parameters make_parameters(const Scene& scene) {

@@ -44,6 +44,7 @@ struct Scene {
 
     double lowest = 0, highest = 1;  ///< displacement of code 0 and of the highest code, model units
     double highest_code = 65535;
+    double code_rounding = 0;  ///< the largest difference of a map's value and its code, in codes
 
     double normal_threshold = 0;         ///< difference of one component of two unit normals
     double summed_height_threshold = 0;  ///< full-scale texels; with the area option: full scale

@@ -12,6 +12,7 @@
 
 #include "testbench/check/conformance/scoreboard.h"
 #include "testbench/check/conformance/texel_borders.h"
+#include "testbench/check/surface_error/bound_check.h"
 #include "testbench/check/transport/conservation.h"
 #include "testbench/check/transport/read_checked_units.h"
 #include "testbench/commands/progress.h"
@@ -33,6 +34,7 @@
 #include "testbench/output/picture/png_writer.h"
 #include "testbench/output/picture/view_picture.h"
 #include "testbench/output/report/conformance_report.h"
+#include "testbench/output/report/indexed_mesh.h"
 #include "testbench/output/report/obj_writer.h"
 #include "testbench/output/report/ply_writer.h"
 #include "testbench/output/report/statistics.h"
@@ -265,6 +267,14 @@ Ending run_once(const Job& asked, const Command& command, const std::string& nam
             golden_run->compare(mesh, judged ? job.check.allowed_triangles : std::numeric_limits<double>::infinity(),
                                 [&](double part) { progress.show("distances", 0.65 + 0.15 * part); });
         golden_run.reset();
+    }
+    if (setup.bound_asked) {
+        progress.show("measuring the bound", 0.8);
+        const Totals totals(simulation);
+        const datapath::Saturations& run = totals.saturations;
+        const InputSaturations& input = setup.input_saturations;
+        checks.bound = check_bound(job, inputs.mesh, inputs.map, setup, recorded_mesh(mesh, units_of(setup)),
+                                   run.displaced_position + run.view_distance + input.position + input.registers > 0);
     }
     files.make_folder(folder, "output.folder");
     progress.show("mesh and picture", 0.8);

@@ -104,6 +104,8 @@ std::string checks_rows(const Checks& checks) {
                         checks.reads->missed == 0
                             ? ""
                             : fmt::format(", {} read but not compared", count(checks.reads->missed))));
+    if (checks.bound)
+        text += check_row("bound", *checks.bound, checks.bound->text());
     return text;
 }
 

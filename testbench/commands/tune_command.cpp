@@ -149,8 +149,9 @@ Searched choose_tests(const TuneOrder& order, TuneRequest& request) {
             "tests.highlight = true: the search does not consider highlights; tune with --set "
             "tests.highlight=false and set it in the tuned job, which then has more triangles");
     if (request.job.map.heights == MapHeights::fitted)
-        throw InputError(
-            "map.heights = \"fitted\" suits one mesh: tune with --set map.heights=given and set it in the tuned job");
+        throw InputError(std::string("map.heights = \"fitted\" suits one mesh: tune with --set map.heights=given") +
+                         (order.largest ? "; in the tuned job, too, since fitted heights keep no largest error"
+                                        : " and set it in the tuned job"));
     if (request.job.hardware.culling != Culling::none)
         throw InputError(
             "hardware.culling = \"back\": culled triangles cannot be measured; tune with --set "

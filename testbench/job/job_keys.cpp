@@ -10,6 +10,7 @@
 #include "modules/timing/timing_keys.h"
 #include "testbench/job/job_choices.h"
 #include "testbench/job/toml_text.h"
+#include "testbench/setup/bound_promise.h"
 
 namespace tessera {
 
@@ -71,7 +72,8 @@ class TableWriter {
              const char* description) const {
         add_plain(leaf, member, KeyKind::integer, unit, range, description);
     }
-    void add(const char* leaf, double Group::*member, const char* unit, KeyRange range, const char* description) const {
+    void add(const char* leaf, double Group::*member, const char* unit, KeyRange range,
+             const std::string& description) const {
         add_plain(leaf, member, KeyKind::number, unit, range, description);
     }
     void add(const char* leaf, std::array<double, 3> Group::*member, const char* unit, KeyRange range,
@@ -137,7 +139,7 @@ class TableWriter {
   private:
     template <typename T>
     void add_plain(const char* leaf, T Group::*member, KeyKind kind, const char* unit, KeyRange range,
-                   const char* description) const {
+                   const std::string& description) const {
         Key& key = push(leaf, kind, unit, description);
         key.range = range;
         key.get = [select = select_, member, range](const Job& job) {
@@ -202,7 +204,7 @@ std::vector<KeyTable> declare_keys() {
     });
     list.table("mesh", &Job::mesh, "The base mesh.", [](const auto& key) {
         using Mesh = Job::Mesh;
-        key.add("source", &Mesh::source, "A built-in shape; file: the mesh in mesh.file (the default if mesh.file is given); patches: the Bezier patches in mesh.file; run: the mesh of an earlier run; lattice: a plane whose vertices lie at centres of texels, mesh.spacing apart. A lattice extends beyond the map if mesh.spacing does not divide the map's size");
+        key.add("source", &Mesh::source, "A built-in shape; file: the mesh in mesh.file (the default if mesh.file is given); patches: the Bezier patches in mesh.file; run: the mesh of an earlier run; lattice: a plane whose vertices lie at centres of texels, mesh.spacing apart, from the first texel's. On a clamped axis of n texels it ends at the last one's centre if mesh.spacing divides n - 1, else beyond the map; on a repeated axis it ends a period later if mesh.spacing divides n, else beyond that");
         key.add("file", &Mesh::file, KeyKind::file, "With mesh.source = \"file\" an OBJ file; with \"patches\" a file of bicubic Bezier patches in the format of Newell's teapot; with \"run\" the folder of an earlier run");
         key.add("fingerprint", &Mesh::fingerprint, KeyKind::text, "64-bit FNV-1a hash of the file (of a run's mesh.ply), 16 hexadecimal digits; a file with another hash is refused. A run writes it into its job.toml; empty: any file");
         key.add("columns", &Mesh::columns, "quads", between(0, 2048), "Quads along u of a plane, cylinder or sphere, or of each patch; 0: 3 for the plane, 4 for each patch, 32 for cylinder and sphere, which need 3 or more");
@@ -258,7 +260,7 @@ std::vector<KeyTable> declare_keys() {
         key.add("summed_height_unit", &Tests::summed_height_unit, "Quantity that the threshold is compared with: sums over rectangles, or the second difference of their mean heights (area)");
         key.add("rank_view", &Tests::rank_view, "With hardware.height_test = \"rank\": the error that its thresholds measure. none: on the surface; per_point, per_pixel: in the picture, in pixels, so that triangles are smaller nearer to camera.eye, with each point of the map, or each pixel, weighted equally. The latter two need hardware.test_order = \"cheap_first\"");
         key.add("rank_threshold", &Tests::rank_threshold, "full scale times the root of a texel; pixels times the root of a texel (per_point), of a pixel (per_pixel)", between(0, 1e9), "With hardware.height_test = \"rank\" and formats.rank_bits: an edge requests a split if the square root of the squared error that its midpoint removes, per added triangle, is larger");
-        key.add("bound_threshold", &Tests::bound_threshold, "full scale; pixels (per_point, per_pixel)", between(0, 1e6), "With hardware.height_test = \"rank\" and formats.bound_bits: largest distance of a point of the map from the mesh, along the normal, or as it appears in the picture. Holds for a base mesh on the rank's lattice, with hardware.triangulation = greatest_rank");
+        key.add("bound_threshold", &Tests::bound_threshold, "full scale; pixels (per_point, per_pixel)", between(0, 1e6), "With hardware.height_test = \"rank\" and formats.bound_bits: largest distance of a point of the map from the mesh, along the normal, or as it appears in the picture. Heights are the map's, before rounding; positions are rounded besides. Asked for if the Rank Table has bounds, or this key is set; a run then measures it at every texel's centre, and says that it holds, or what to set. It holds with: " + bound_condition_settings());
         key.add("curvature_threshold", &Tests::curvature_threshold, "full scale times texels", between(0, 1e9), "With hardware.height_test = \"curvature\": an edge requests a split if the map deviates from its chord by more than the threshold divided by the edge's length in texels, rounded up to a power of two");
         key.add("mipmap_filter", &Tests::mipmap_filter, "With hardware.height_test = \"mipmap\": height of a block of texels, their mean or their maximum");
         key.add("mipmap_threshold", &Tests::mipmap_threshold, "full scale", between(0, 1), "With hardware.height_test = \"mipmap\": an edge requests a split if the filtered height at its midpoint deviates by more from the mean of those at its ends");

@@ -7,6 +7,7 @@
 
 #include "testbench/machine/bare_recursion.h"
 #include "testbench/machine/resolve_job.h"
+#include "testbench/setup/bound_promise.h"
 #include "testbench/setup/prepare_model.h"
 #include "testbench/setup/tables/fitted_heights.h"
 
@@ -88,8 +89,9 @@ std::string unused_range_remark(const MapRange& range, const HeightMap& map) {
 MachineSetup make_setup(const Job& job, const BaseMesh& mesh, const HeightMap& map) {
     require_resolved(job, "make_setup");
     MachineSetup setup;
+    const SceneSettings settings = scene_settings(job);
     static_cast<PreparedScene&>(setup) =
-        prepare_model(scene_settings(job), mesh, map, job.map.source == MapSource::file ? job.map.file : "map");
+        prepare_model(settings, mesh, map, job.map.source == MapSource::file ? job.map.file : "map");
     setup.model_scale = {setup.scale, {setup.centre[0], setup.centre[1], setup.centre[2]}};
     setup.summed_height_bits_chosen = job.formats.summed_height_bits == 0;
     if (std::string remark = unused_range_remark(job.map.range, map); !remark.empty())
@@ -98,6 +100,7 @@ MachineSetup make_setup(const Job& job, const BaseMesh& mesh, const HeightMap& m
     setup.machines = static_cast<unsigned>(job.hardware.machines);
     if (job.map.heights == MapHeights::fitted)
         fit_heights_to_own_mesh(job.limits.triangles, setup);
+    remark_on_bound(settings, mesh, setup);
     return setup;
 }
 

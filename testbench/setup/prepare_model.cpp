@@ -59,27 +59,6 @@ std::optional<RadiusScale> radius_scale(const PreparedScene& scene) {
                        4 * (1 + 8 * root_of_three * position / step)};
 }
 
-/// Adds remarks on conditions that invalidate a bound, on the surface or in the picture; for the mesh: remark_on_base.
-void remark_on_bound(const SceneSettings& settings, const BaseMesh& mesh, PreparedScene& scene) {
-    const datapath::Formats& formats = scene.registers.formats;
-    if (formats.height_test != datapath::HeightTest::rank || formats.bound_bits == 0)
-        return;
-    const auto unless = [&](bool fine, const char* why) {
-        if (!fine)
-            scene.remarks.push_back(fmt::format("tests.bound_threshold is not guaranteed{}: {}",
-                                                formats.distances ? " in the picture" : "", why));
-    };
-    unless(!settings.tests.view, "the View Test may stop a split that is needed; set tests.view = false");
-    unless(settings.triangulation == datapath::Triangulation::greatest_rank,
-           "splits in another order give other edges; set hardware.triangulation = \"greatest_rank\"");
-    if (!formats.distances)
-        return;
-    constexpr double whole_map = 65536;  // codes
-    unless(mesh.beyond_map, "radii hold only for a flat base mesh, mesh.source = \"lattice\"");
-    unless(scene.rank_tables.highest_bound_threshold >= bound_threshold(whole_map, formats.bound_bits),
-           "formats.bound_bits is too small for the bounds of dependent midpoints; raise it");
-}
-
 /// Adds remarks on the Rank Test's limits on a base mesh, and on remedies.
 void remark_on_base(const std::vector<TextureTriangle>& base, PreparedScene& scene) {
     const RankTables& tables = scene.rank_tables;
@@ -167,12 +146,14 @@ PreparedScene prepare_model(const SceneSettings& settings, const BaseMesh& mesh,
     registers.transform = make_transform(settings.camera, model_scale, formats, saturated);
     formats.view_distance = view_distance_format(registers.transform, formats.position);
     make_height_table(settings.tests, scene);
-    remark_on_bound(settings, mesh, scene);
     lay_out_tables(registers);
 
     const ViewAxes view = view_axes(settings.camera);
     const double height_per_code = displacement.range * model_scale.scale / scene.map.highest_code();
-    registers.tests = make_tests(settings.tests, formats,
+    TestSettings tests = settings.tests;
+    if (!formats.distances)  // the rounding of heights to codes is part of the bound
+        tests.bound_threshold = std::max(0.0, tests.bound_threshold - scene.map.rounding / scene.map.highest_code());
+    registers.tests = make_tests(tests, formats,
                                  {focal_length(settings.camera), corner_secant(settings.camera), distance_step(formats),
                                   std::abs(height_per_code), std::sqrt(scene.texel_size[0] * scene.texel_size[1])});
     if (!formats.distances)

@@ -8,6 +8,7 @@
 #include <glm/glm.hpp>
 
 #include "testbench/common/error.h"
+#include "testbench/setup/bound_promise.h"
 #include "testbench/setup/check_settings.h"
 #include "testbench/setup/mesh/smooth_normals.h"
 #include "testbench/setup/mesh/tangent_frames.h"
@@ -89,6 +90,7 @@ PreparedScene prepare(const Scene& scene) {
     check_settings(scene.settings);
     const BaseMesh mesh = base_mesh(scene);
     PreparedScene prepared = prepare_model(scene.settings, mesh, height_map(scene), "map");
+    remark_on_bound(scene.settings, mesh, prepared);
     prepared.remarks.insert(prepared.remarks.begin(), mesh.repairs.begin(), mesh.repairs.end());
     if (mesh.dropped_degenerate > 0)
         prepared.remarks.push_back(

@@ -46,6 +46,8 @@ struct PreparedScene {
     std::uint64_t texture_clamped = 0;        ///< vertices whose u or v lay outside a clamped map
     InputSaturations input_saturations;
     std::vector<std::string> remarks;  ///< one sentence each, for a report
+    bool bound_asked = false;          ///< tests.bound_threshold is asked for
+    bool bound_promised = false;       ///< and all its conditions are met (bound_promise.h)
 
     /// The displacement map's contents. All other tables are made from `map`.
     const std::vector<std::uint16_t>& heights() const { return fitted_heights.empty() ? map.codes : fitted_heights; }

@@ -16,7 +16,9 @@ QuantisedMap quantise_map(const HeightMap& map, int bits, datapath::AddressMode 
     const double highest = result.highest_code();
     for (const float value : map.values) {
         const double part = range > 0 ? (static_cast<double>(value) - map.range_low) / range : 0;
-        result.codes.push_back(static_cast<std::uint16_t>(std::lround(std::clamp(part, 0.0, 1.0) * highest)));
+        const double unrounded = std::clamp(part, 0.0, 1.0) * highest, code = std::round(unrounded);
+        result.codes.push_back(static_cast<std::uint16_t>(code));
+        result.rounding = std::max(result.rounding, std::abs(code - unrounded));
     }
     return result;
 }

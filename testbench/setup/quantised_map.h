@@ -16,6 +16,7 @@ struct QuantisedMap {
     datapath::MapGeometry geometry;
     int bits = 16;
     std::vector<std::uint16_t> codes;
+    double rounding = 0;  ///< the largest difference of a value and its code, in codes
 
     std::uint16_t code(std::uint32_t x, std::uint32_t y) const { return codes[std::size_t{y} * geometry.width + x]; }
     std::uint32_t highest_code() const { return (std::uint32_t{1} << bits) - 1; }

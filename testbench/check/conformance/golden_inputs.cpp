@@ -30,7 +30,7 @@ void set_tables(golden::Map& map, const PreparedScene& prepared) {
         map.set_heights({prepared.fitted_heights.begin(), prepared.fitted_heights.end()});
     const RankTables& ranks = prepared.rank_tables;
     map.set_ranks({ranks.columns, ranks.rows, ranks.rank, ranks.bound, ranks.radius,
-                   static_cast<int>(ranks.highest_bound_threshold)});
+                   static_cast<int>(ranks.highest_bound_threshold), ranks.order});
     if (!prepared.mipmap_table.entries.empty())
         map.make_mipmap(prepared.mipmap_table.filter == MipmapFilter::maximum ? golden::MipmapFilter::maximum
                                                                               : golden::MipmapFilter::mean);

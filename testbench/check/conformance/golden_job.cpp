@@ -50,6 +50,19 @@ double texel_parts(const Job::Formats& formats, golden::Filter filter) {
     return filter == golden::Filter::bilinear && formats.texture_fraction > 0 ? 2 : 1;
 }
 
+double code_at(std::size_t texel, const HeightMap& map, const golden::Scene& scene) {
+    return golden::code_of(map.values[texel], map.range_low, map.range_high, scene.highest_code);
+}
+
+double largest_rounding(const HeightMap& map, const golden::Scene& scene) {
+    double largest = 0;
+    for (std::size_t texel = 0; texel < map.values.size(); ++texel) {
+        const double code = code_at(texel, map, scene);
+        largest = std::max(largest, std::abs(std::floor(code + 0.5) - code));
+    }
+    return largest;
+}
+
 golden::Scene make_scene(const Job& job, const BaseMesh& mesh, const HeightMap& map, const ModelScale& model_scale) {
     golden::Scene scene;
     const Job::Camera& camera = job.camera;
@@ -74,6 +87,7 @@ golden::Scene make_scene(const Job& job, const BaseMesh& mesh, const HeightMap& 
         scene.rank_view = golden_rank_view(job.tests.rank_view);
         scene.rank_bits = static_cast<int>(job.formats.rank_bits);
         scene.bound_bits = static_cast<int>(job.formats.bound_bits);
+        scene.code_rounding = scene.bound_bits > 0 ? largest_rounding(map, scene) : 0;
     }
     scene.view_threshold = tests.view_threshold;
     scene.generation_limit = static_cast<int>(tests.generation_limit);
@@ -85,10 +99,6 @@ golden::Scene make_scene(const Job& job, const BaseMesh& mesh, const HeightMap& 
     scene.texel_parts = texel_parts(job.formats, scene.filter);
     scene.light = vector(job.hardware.light);
     return scene;
-}
-
-double code_at(std::size_t texel, const HeightMap& map, const golden::Scene& scene) {
-    return golden::code_of(map.values[texel], map.range_low, map.range_high, scene.highest_code);
 }
 
 golden::Map make_map(const Job& job, const HeightMap& height_map, const BaseMesh& mesh, const golden::Scene& scene,
@@ -119,6 +129,9 @@ GoldenJob::GoldenJob(const Job& job, const BaseMesh& mesh, const HeightMap& heig
       parameters_(golden::make_parameters(scene_)),
       map_(make_map(job_, height_map, mesh, scene_, parameters_.scale)) {
     set_tables(map_, tables);
+    if (job_.hardware.height_test == HeightTest::mipmap)
+        map_.make_mipmap(job_.tests.mipmap_filter == MipmapFilter::maximum ? golden::MipmapFilter::maximum
+                                                                           : golden::MipmapFilter::mean);
     if (scene_.rank_view == golden::RankView::none)
         parameters_.bound_threshold = std::min(parameters_.bound_threshold, map_.rank_table().highest_bound_threshold);
 }
@@ -131,6 +144,10 @@ golden::Vertex GoldenJob::vertex(std::uint32_t index) const {
     vertex.tangent = given.tangent;
     vertex.handedness = given.handedness < 0 ? -1 : 1;
     return golden::place_vertex(vertex, given.texture, scene_.placement, map_, mesh_.beyond_map);
+}
+
+glm::dvec2 GoldenJob::texel_size() const {
+    return tessera::texel_size(mesh_, height_map_, scene_.placement.scale);
 }
 
 double GoldenJob::unrounded_code(std::size_t texel) const {

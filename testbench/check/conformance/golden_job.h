@@ -32,6 +32,9 @@ class GoldenJob {
     /// A vertex of the base mesh in the world: the first five members.
     golden::Vertex vertex(std::uint32_t index) const;
 
+    /// World units, along u and v.
+    glm::dvec2 texel_size() const;
+
     /// The code of a texel of the map before rounding.
     double unrounded_code(std::size_t texel) const;
 

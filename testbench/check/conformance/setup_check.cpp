@@ -507,8 +507,9 @@ SetupResult check_setup(const MachineSetup& setup, const GoldenJob& golden, Simu
     SetupResult result;
     RegisterCheck(setup, golden, result).run();
     BaseCheck(setup, golden, result).run();
+    const golden::DerivedRanks ranks = derived_ranks(setup, golden, result);
     for (const auto& machine : simulation.machines)
-        check_tables(setup, golden, machine->host, result);
+        check_tables(setup, golden, ranks, machine->host, result);
     return result;
 }
 

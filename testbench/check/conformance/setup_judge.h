@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "golden/golden_ranks.h"
 #include "modules/datapath/format.h"
 #include "testbench/check/conformance/setup_check.h"
 
@@ -80,7 +81,11 @@ inline double lsb_per_unit(const datapath::Format& format) {
     return std::ldexp(1.0, format.fraction);
 }
 
+/// The Rank Table that golden derives, empty if there is none or midpoints share entries. Reports an invalid order.
+golden::DerivedRanks derived_ranks(const MachineSetup& setup, const GoldenJob& golden, SetupResult& result);
+
 /// Checks every entry of the three tables.
-void check_tables(const MachineSetup& setup, const GoldenJob& golden, Host& host, SetupResult& result);
+void check_tables(const MachineSetup& setup, const GoldenJob& golden, const golden::DerivedRanks& ranks, Host& host,
+                  SetupResult& result);
 
 }  // namespace tessera::setup_check

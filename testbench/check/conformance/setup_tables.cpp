@@ -1,6 +1,10 @@
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
+#include "golden/golden_curvature.h"
 #include "modules/datapath/curvature.h"
 #include "modules/datapath/map_entry.h"
 #include "testbench/check/conformance/setup_judge.h"
@@ -45,8 +49,9 @@ class TableReader {
 
 class TableCheck {
   public:
-    TableCheck(const MachineSetup& setup, const GoldenJob& golden, Host& host, SetupResult& result)
-        : registers_(setup.registers), golden_(golden), host_(host), result_(result) {}
+    TableCheck(const MachineSetup& setup, const GoldenJob& golden, const golden::DerivedRanks& ranks, Host& host,
+               SetupResult& result)
+        : registers_(setup.registers), golden_(golden), ranks_(ranks), host_(host), result_(result) {}
 
     void run() {
         check_displacement_map();
@@ -155,36 +160,66 @@ class TableCheck {
     }
 
     void check_rank_table() {
-        Judge judge(result_, "rank table", "every entry, as ranked by the host");
         const golden::RankTable& table = golden_.map().rank_table();
+        const bool derived = !ranks_.ranks.empty() || !ranks_.bounds.empty();
+        Judge judge(result_, "rank table",
+                    derived ? "every rank, bound and radius; of a double's error, both sides"
+                            : "every entry, as ranked by the host, since midpoints share entries");
         each_entry(judge, host_.summed_height_table, registers_.height_table, static_cast<int>(table.columns),
                    static_cast<int>(table.rows), [&](std::uint32_t x, std::uint32_t y, std::uint64_t entry) {
                        const std::size_t k = std::size_t{y} * static_cast<std::size_t>(table.columns) + x;
-                       const std::uint64_t rank = table.ranks.empty() ? 0 : table.ranks[k];
-                       const std::uint64_t bound = table.bounds.empty() ? 0 : table.bounds[k];
-                       const std::uint64_t radius = table.radii.empty() ? 0 : table.radii[k];
+                       const auto field = [&](const char* name, int bits, const auto& given,
+                                              const std::vector<golden::EntryRange>& ranges) {
+                           if (bits == 0)
+                               return;
+                           const std::uint64_t value = entry & ((std::uint64_t{1} << bits) - 1);
+                           entry >>= bits;
+                           const golden::EntryRange range =
+                               derived ? ranges[k] : golden::EntryRange{number(given[k]), number(given[k])};
+                           judge.judge([&] { return fmt::format("({}, {}).{}", x, y, name); }, number(value), range.low,
+                                       {0, range.high - range.low});
+                       };
                        const Job::Formats& formats = golden_.job().formats;
-                       judge.judge([&] { return fmt::format("({}, {})", x, y); }, number(entry),
-                                   number(rank | (bound | radius << formats.bound_bits) << formats.rank_bits), exact);
+                       field("rank", static_cast<int>(formats.rank_bits), table.ranks, ranks_.ranks);
+                       field("bound", static_cast<int>(formats.bound_bits), table.bounds, ranks_.bounds);
+                       field("radius", table.radii.empty() ? 0 : datapath::radius_bits, table.radii, ranks_.radii);
+                       judge.require(entry == 0, [&] { return fmt::format("({}, {}) has other bits", x, y); });
                    });
     }
 
     void check_curvature_table() {
-        Judge judge(result_, "curvature table", "every entry, as fitted by the host");
-        const std::vector<golden::Curvature>& cells = golden_.map().curvature_table().cells;
+        Judge judge(result_, "curvature table",
+                    "every quadratic and its rest, to nearest, in the smallest unit that fits");
+        const golden::CurvatureTable& table = golden_.map().curvature_table();
+        std::vector<std::array<std::int64_t, 3>> cells;  // column, row, reach
+        for (std::int64_t reach = 2;; reach *= 2) {
+            const auto nearest = [&](std::int64_t texel) { return (texel + reach / 2) / reach; };
+            for (std::int64_t row = 0; row <= nearest(table.rows - 1); ++row)
+                for (std::int64_t column = 0; column <= nearest(table.columns - 1); ++column)
+                    cells.push_back({column * reach, row * reach, reach});
+            if (2 * reach >= std::max(table.columns, table.rows))
+                break;
+        }
         each_entry(judge, host_.summed_height_table, registers_.height_table, static_cast<int>(cells.size()), 1,
                    [&](std::uint32_t x, std::uint32_t, std::uint64_t entry) {
+                       const auto [column, row, reach] = cells[x];
+                       const golden::Curvature cell = golden::fit_curvature(golden_.map(), column, row, reach);
                        const datapath::CurvatureEntry found = datapath::unpack_curvature(entry);
-                       const golden::Curvature& cell = cells[x];
                        const double unit = std::ldexp(1.0, found.exponent - datapath::curvature_fraction);
+                       constexpr double leeway = 0.02;  // of a unit, for sums of squares in doubles
                        const auto field = [&](const char* name, double hardware, double golden) {
-                           judge.judge([&] { return fmt::format("{}.{}", x, name); }, hardware, golden, exact);
+                           judge.judge([&] { return fmt::format("{}.{}", x, name); }, hardware, golden / unit,
+                                       to_nearest, leeway);
                        };
-                       field("unit", unit, cell.unit);
-                       field("xx", found.xx * unit, cell.xx);
-                       field("xy", found.xy * unit, cell.xy);
-                       field("yy", found.yy * unit, cell.yy);
-                       field("rest", found.rest * unit, cell.rest);
+                       field("xx", found.xx, cell.xx);
+                       field("xy", found.xy, cell.xy);
+                       field("yy", found.yy, cell.yy);
+                       field("rest", found.rest, cell.rest);
+                       const double largest = std::max({std::abs(cell.xx), std::abs(cell.xy), std::abs(cell.yy)});
+                       const double smaller = unit / 2;
+                       const bool fits = largest / smaller < 127.5 - leeway && cell.rest / smaller < 255.5 - leeway;
+                       judge.require(found.exponent == 0 || !fits,
+                                     [&] { return fmt::format("{}.unit = {}, and a smaller one fits", x, unit); });
                    });
     }
 
@@ -201,14 +236,66 @@ class TableCheck {
 
     const Registers& registers_;
     const GoldenJob& golden_;
+    const golden::DerivedRanks& ranks_;
     Host& host_;
     SetupResult& result_;
 };
 
 }  // namespace
 
-void check_tables(const MachineSetup& setup, const GoldenJob& golden, Host& host, SetupResult& result) {
-    TableCheck(setup, golden, host, result).run();
+golden::DerivedRanks derived_ranks(const MachineSetup& setup, const GoldenJob& golden, SetupResult& result) {
+    const golden::Map& map = golden.map();
+    if (!map.has_ranks() && !map.has_curvatures())
+        return {};
+    golden::RankSource source;
+    const datapath::Formats& formats = setup.registers.formats;
+    const double step = std::ldexp(1.0, -formats.texture.fraction);
+    glm::dvec2 covered(map.width(), map.height());
+    for (const std::uint32_t number : result.base_triangles) {
+        auto& corners = source.base.emplace_back();
+        for (std::size_t k = 0; k < 3; ++k) {
+            corners[k] = golden::on_grid(golden.vertex(golden.mesh().triangles[number][k]).texture, step);
+            const glm::dvec2 reached = glm::floor(corners[k]) + 1.0;
+            if (map.address_u() == golden::AddressMode::clamp)
+                covered.x = std::max(covered.x, reached.x);
+            if (map.address_v() == golden::AddressMode::clamp)
+                covered.y = std::max(covered.y, reached.y);
+        }
+    }
+    Judge judge(result, "table's extent", "texels that the base mesh covers; the order of bisections");
+    const golden::RankTable& table = map.rank_table();
+    judge.judge("columns", number(map.has_ranks() ? table.columns : map.curvature_table().columns), covered.x, exact);
+    judge.judge("rows", number(map.has_ranks() ? table.rows : map.curvature_table().rows), covered.y, exact);
+    std::vector<std::uint32_t> sorted = table.order;
+    std::sort(sorted.begin(), sorted.end());
+    if (!map.has_ranks() || std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end())
+        return {};
+    source.columns = table.columns;
+    source.rows = table.rows;
+    source.rank_bits = golden.scene().rank_bits;
+    source.bound_bits = golden.scene().bound_bits;
+    source.order = table.order;
+    judge.require(sorted.empty() || sorted.back() < source.columns * source.rows,
+                  [] { return std::string("a bisection beyond the table"); });
+    if (!sorted.empty() && sorted.back() >= source.columns * source.rows)
+        return {};
+    if (golden.scene().rank_view != golden::RankView::none && source.bound_bits > 0) {
+        const double last_place = std::ldexp(1.0, -formats.view_distance.fraction);
+        source.radii = true;
+        source.steps = glm::dvec3(golden.texel_size(), std::abs(golden.parameters().scale)) / last_place;
+        source.rounding = 4 + 32 * std::sqrt(3.0) * std::ldexp(1.0, -formats.position.fraction) / last_place;
+    }
+    golden::DerivedRanks ranks = golden::derive_ranks(map, source);
+    judge.require(ranks.fault.empty(), [&] { return ranks.fault; });
+    if (source.bound_bits > 0 && ranks.fault.empty())
+        judge.judge("highest_bound_threshold", table.highest_bound_threshold, ranks.highest_bound_threshold.low,
+                    {0, ranks.highest_bound_threshold.high - ranks.highest_bound_threshold.low});
+    return ranks;
+}
+
+void check_tables(const MachineSetup& setup, const GoldenJob& golden, const golden::DerivedRanks& ranks, Host& host,
+                  SetupResult& result) {
+    TableCheck(setup, golden, ranks, host, result).run();
 }
 
 }  // namespace tessera::setup_check

@@ -45,7 +45,8 @@ std::vector<RankPoint> rank_curve(MachineSetup& setup, const Job& job, const Tex
             point.bound = bound;
             point.register_value = static_cast<std::uint32_t>(value);
             point.threshold = search.threshold_of(point.register_value);
-            point.promised = bound_error(point.register_value, std::max(bits, 1)) * model_units_per_code(setup);
+            point.promised = (bound_error(point.register_value, std::max(bits, 1)) + setup.map.rounding) *
+                             model_units_per_code(setup);
             point.outcome = search.outcome(point.register_value, limit, true);
             on_progress(1 - static_cast<double>(value) / (search.highest() + 1.0));
             if (!point.outcome.complete)

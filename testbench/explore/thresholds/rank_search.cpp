@@ -81,7 +81,8 @@ double RankSearch::threshold_of(std::uint32_t threshold) const {
         return goal_.largest ? bound_error(entry, bits_) : rank_error(entry, bits_);
     };
     const double codes = std::sqrt(error(threshold) * error(threshold + 1));
-    const double value = six_digits(codes / static_cast<double>(setup_.map.highest_code()));
+    const double rounding = goal_.largest ? setup_.map.rounding : 0;  // part of the threshold, not of its register
+    const double value = six_digits((codes + rounding) / static_cast<double>(setup_.map.highest_code()));
     return goal_.largest ? std::min(value, 1.0) : value;
 }
 
@@ -148,7 +149,8 @@ ThresholdSearch::Found RankSearch::search() {
     std::uint32_t too_high = highest_ + 1;
     if (goal_.largest && setup_.height_per_code != 0) {
         const double codes = goal_.error * setup_.scale / std::abs(setup_.height_per_code);
-        const std::uint32_t threshold = std::min(bound_threshold(codes, bits_), highest_);
+        const std::uint32_t threshold =
+            std::min(bound_threshold(std::max(0.0, codes - setup_.map.rounding), bits_), highest_);
         const Outcome here = outcome(threshold, goal_.limit(), true);
         if (met(here)) {
             take(threshold, here);

@@ -199,6 +199,8 @@ std::string conformance_text(const Checks& checks) {
                                 : std::string("Work conservation: not checked (check.work = false).\n"));
     if (checks.reads)
         text += "\n" + reads_text(*checks.reads);
+    if (checks.bound)
+        text += fmt::format("\nBound: {}\n", checks.bound->text());
     if (!checks.remarks.empty())
         text += "\nRemarks on mesh and map:\n";
     for (const std::string& remark : checks.remarks)
@@ -256,6 +258,14 @@ std::string conformance_json(const Checks& checks) {
                          {"wrong", checks.reads->wrong},
                          {"missed", checks.reads->missed},
                          {"first_wrong", checks.reads->first_wrong}};
+    if (checks.bound)
+        json["bound"] = {{"passed", checks.bound->passed()},
+                         {"promised", checks.bound->promised},
+                         {"threshold", checks.bound->threshold},
+                         {"deviation", checks.bound->deviation},
+                         {"unit", checks.bound->in_picture ? "pixels" : "full scale"},
+                         {"points", checks.bound->points},
+                         {"text", checks.bound->text()}};
     return json.dump(2) + "\n";
 }
 

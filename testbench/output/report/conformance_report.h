@@ -7,6 +7,7 @@
 #include "testbench/check/conformance/end_to_end.h"
 #include "testbench/check/conformance/setup_check.h"
 #include "testbench/check/mesh/invariants.h"
+#include "testbench/check/surface_error/bound_check.h"
 #include "testbench/check/transport/read_check.h"
 #include "testbench/check/transport/transport_check.h"
 
@@ -20,6 +21,7 @@ struct Checks {
     std::optional<InvariantResult> invariants;
     std::optional<WorkResult> work;
     std::optional<ReadResult> reads;
+    std::optional<BoundResult> bound;  ///< with a Bound Test
     double allowed_flips = 0.5;        ///< percent of edges
     std::vector<std::string> remarks;  ///< repairs and anomalies of mesh and map; one sentence each
     std::string texel_borders;         ///< a warning, see texel_borders.h; empty: none
@@ -27,7 +29,7 @@ struct Checks {
     bool passed() const {
         return (!setup || setup->passed()) && (!conformance || conformance->passed(allowed_flips)) &&
                (!end_to_end || end_to_end->passed()) && (!invariants || invariants->passed()) &&
-               (!work || work->passed()) && (!reads || reads->passed());
+               (!work || work->passed()) && (!reads || reads->passed()) && (!bound || bound->passed());
     }
     bool any() const { return setup || conformance || end_to_end || invariants || work || reads; }
 };

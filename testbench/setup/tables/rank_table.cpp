@@ -208,6 +208,20 @@ std::int32_t seen_threshold(double octaves, int fraction, int bits) {
     return static_cast<std::int32_t>(fixed > -most ? std::min(fixed, most - 1) : -most);  // no number: nothing to see
 }
 
+std::vector<std::uint8_t> highest_generations(const SplitHierarchy& hierarchy, const RankTables& tables,
+                                              std::uint32_t highest) {
+    std::vector<std::uint8_t> generations(highest, 0);
+    for (std::size_t k = 0; k < hierarchy.splits.size(); ++k) {
+        if (const std::uint32_t entry = tables.bound[tables.order[k]]; entry > 0) {
+            std::uint8_t& here = generations[entry - 1];
+            here = std::max(here, static_cast<std::uint8_t>(std::min(hierarchy.splits[k].generation, 255)));
+        }
+    }
+    for (std::size_t k = highest; k-- > 1;)
+        generations[k - 1] = std::max(generations[k - 1], generations[k]);
+    return generations;
+}
+
 std::uint64_t count_clashes(const SplitHierarchy& hierarchy) {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> texels;
     for (const EdgeSplit& split : hierarchy.splits)
@@ -229,6 +243,9 @@ RankTables make_rank_tables(const QuantisedMap& map, const std::vector<TextureTr
     const SplitHierarchy hierarchy = make_split_hierarchy(map, base, formats, radii ? radii->steps : SurfaceSteps{});
     tables.least_error = hierarchy.least_error;
     tables.clashes = count_clashes(hierarchy);
+    tables.order.reserve(hierarchy.splits.size());
+    for (const EdgeSplit& split : hierarchy.splits)
+        tables.order.push_back(split.row * tables.columns + split.column);
     if (rank_bits != 0) {
         const LogScale scale = rank_scale(rank_bits);
         EntryTable table(hierarchy, tables.columns, tables.rows);
@@ -240,6 +257,7 @@ RankTables make_rank_tables(const QuantisedMap& map, const std::vector<TextureTr
         EntryTable table(hierarchy, tables.columns, tables.rows);
         tables.highest_bound_threshold = table.fill(wanted_bounds(hierarchy, scale), scale.highest());
         tables.bound = table.entries();
+        tables.generations = highest_generations(hierarchy, tables, scale.highest());
         if (radii)
             tables.radius = nested_radii(hierarchy, radii->rounding, tables.columns, tables.rows);
     }

@@ -1,5 +1,7 @@
 #pragma once
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -38,6 +40,15 @@ struct RankTables {
     std::uint32_t highest_bound_threshold = 0;
     /// Midpoints that share their texel with another, whose entry is the greater one: none on a lattice.
     std::uint64_t clashes = 0;
+    /// Entries of the midpoints in the order of their bisection: the author's choice, from which all entries follow.
+    std::vector<std::uint32_t> order;
+    /// The highest generation of the midpoints whose bound exceeds a threshold, by threshold; 0: there are none.
+    std::vector<std::uint8_t> generations;
+
+    int highest_generation(std::int64_t threshold) const {
+        const auto at = static_cast<std::size_t>(std::max<std::int64_t>(threshold, 0));
+        return at < generations.size() ? generations[at] : 0;
+    }
 };
 
 /// The scale of radii, in LSB of a vertex's distance.

@@ -60,9 +60,11 @@ struct MeshTriangle {
     struct End {
         TexCoord at;
         std::uint32_t code = 0;
+        int generation = 0;
     };
     TextureTriangle corner{};
     std::array<std::uint16_t, 3> code{};
+    std::array<int, 3> generation{};
     std::array<std::uint32_t, 3> edge{};
     std::array<std::uint32_t, 3> next_side{};
     std::array<bool, 3> reversed{};  ///< the edge runs from corner k + 1 to corner k
@@ -224,7 +226,9 @@ class Refinement {
         unlink(first, k1);
         triangles_.push_back(triangles_[first]);
         MeshTriangle &a = triangles_[first], &b = triangles_[second];
-        const std::array<MeshTriangle::End, 2> ends{{{a.corner[k], a.code[k]}, {a.corner[k1], a.code[k1]}}};
+        const std::array<MeshTriangle::End, 2> ends{
+            {{a.corner[k], a.code[k], a.generation[k]}, {a.corner[k1], a.code[k1], a.generation[k1]}}};
+        split.generation = std::max(ends[0].generation, ends[1].generation) + 1;
         if (a.maker != nothing)
             hierarchy_.dependencies.push_back({number, a.maker, apart(ends, a.made_of)});
         split.reach = std::max(split.reach, reach(ends, a));
@@ -234,6 +238,7 @@ class Refinement {
         a.maker = b.maker = number;
         a.corner[k1] = b.corner[k] = middle;
         a.code[k1] = b.code[k] = code_under(map_, middle, formats_);
+        a.generation[k1] = b.generation[k] = split.generation;
         const std::uint32_t reversed = a.reversed[k] ? 1 : 0;
         link(halves + reversed, first, k, a.reversed[k]);
         link(bisector, first, k1, false);

@@ -16,6 +16,7 @@ struct SurfaceSteps {
 struct EdgeSplit {
     std::uint32_t column = 0, row = 0;  ///< texel of the midpoint; on a repeated axis within the map
     std::uint32_t triangles = 0;        ///< number of triangles it replaces by twice as many
+    int generation = 0;                 ///< of the midpoint
     double squared_fall = 0;            ///< of the sum of their squared errors, codes^2; negative if it rises
     double largest = 0;                 ///< the largest error in the triangles it replaces, codes
     double reach = 0;  ///< bound on the sum of distances from both ends to a point over these triangles, unit of

@@ -45,3 +45,20 @@ TEST_CASE("Crater Lake takes 3 x 4 quads of 128 texels, the last extend beyond t
     CHECK(lattice_quads(130, false, 128) == 2);
     CHECK(lattice_quads(1, false, 128) == 1);
 }
+
+TEST_CASE(
+    "On a clamped axis a lattice ends at the last texel's centre or beyond the map, on a repeated one a period later or more") {
+    const auto last = [](std::int64_t texels, bool repeats, std::int64_t spacing) {
+        const BaseMesh mesh = make_lattice({texels, texels}, {repeats, repeats}, spacing, 2, 2);
+        double farthest = 0;
+        for (const BaseVertex& vertex : mesh.vertices)
+            farthest = std::max(farthest, vertex.texture.x * static_cast<double>(texels));
+        return farthest;
+    };
+    CHECK(last(65, false, 32) == Approx(64.5));  // the last texel's centre: inside
+    CHECK(last(64, false, 32) == Approx(64.5));  // beyond
+    CHECK(last(66, false, 32) == Approx(96.5));
+    CHECK(last(64, true, 32) == Approx(64.5));  // a period after 0.5
+    CHECK(last(65, true, 32) == Approx(96.5));
+    CHECK(last(1, false, 32) == Approx(32.5));
+}

@@ -1,0 +1,105 @@
+// Golden's own Rank and Curvature Tables: a fault of the host's is noticed, though golden is given the same table.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "testbench/check/conformance/setup_check.h"
+#include "testbench/machine/inputs.h"
+#include "testbench/machine/simulation.h"
+#include "testbench/tests/check/conformance/setup_run.h"
+#include "testbench/tests/support/case_table.h"
+#include "testbench/tests/support/job_settings.h"
+
+using namespace tessera;
+using Catch::Contains;
+using testing::SetupRun;
+
+namespace {
+
+/// A fault of the host's Rank Table, made before it is written.
+struct TableFault {
+    std::string name;
+    void (*make)(MachineSetup&);
+    std::string noticed;
+};
+
+void scale_bounds(MachineSetup& setup, double by) {
+    const double steps = std::ldexp(std::log2(by), setup.registers.formats.bound_bits - 5);
+    for (std::uint16_t& bound : setup.rank_tables.bound)
+        if (bound > 0)
+            bound = static_cast<std::uint16_t>(std::lround(bound + steps));
+}
+
+const testing::CaseTable table_faults(
+    "golden's own Rank Table: ",
+    {TableFault{"bounds 3 % too small", [](MachineSetup& s) { scale_bounds(s, 0.97); }, ".bound"},
+     {"bounds 3 % too large", [](MachineSetup& s) { scale_bounds(s, 1.03); }, ".bound"},
+     {"one bound", [](MachineSetup& s) { ++s.rank_tables.bound[s.rank_tables.order[100]]; }, ".bound"},
+     {"a bound where no edge is bisected", [](MachineSetup& s) { s.rank_tables.bound[0] = 1; }, "(0, 0).bound"},
+     {"one rank", [](MachineSetup& s) { --s.rank_tables.rank[s.rank_tables.order[100]]; }, ".rank"},
+     {"two ranks exchanged",
+      [](MachineSetup& s) {
+          std::swap(s.rank_tables.rank[s.rank_tables.order[0]], s.rank_tables.rank[s.rank_tables.order[300]]);
+      },
+      ".rank"},
+     {"radii of one", [](MachineSetup& s) { std::fill(s.rank_tables.radius.begin(), s.rank_tables.radius.end(), 1); },
+      ".radius"},
+     {"one radius too small", [](MachineSetup& s) { --s.rank_tables.radius[s.rank_tables.order[50]]; }, ".radius"},
+     {"two bisections exchanged", [](MachineSetup& s) { std::swap(s.rank_tables.order[0], s.rank_tables.order[400]); },
+      "bisection"},
+     {"a bisection left out", [](MachineSetup& s) { s.rank_tables.order.pop_back(); }, "never bisected"},
+     {"the highest threshold", [](MachineSetup& s) { --s.rank_tables.highest_bound_threshold; },
+      "highest_bound_threshold"},
+     {"its columns", [](MachineSetup& s) { ++s.rank_tables.columns; }, "columns"}},
+    [](const TableFault& fault) {
+        Job job = testing::with_settings(
+            {},
+            "map.source=noise hardware.height_test=rank mesh.source=lattice mesh.spacing=16 map.width=60 map.height=44 "
+            "formats.bound_bits=16 formats.rank_bits=16 hardware.test_order=cheap_first tests.rank_view=per_point "
+            "hardware.triangulation=greatest_rank map.address_v=clamp");
+        job.mode = Mode::functional;
+        const Inputs inputs = load_inputs(job);
+        const Job& resolved = inputs.resolved.job;
+        MachineSetup setup = make_setup(resolved, inputs.mesh, inputs.map);
+        fault.make(setup);
+        const GoldenJob golden(resolved, inputs.mesh, inputs.map, setup.model_scale, setup);
+        Simulation simulation(setup, 1000000);
+        REQUIRE(simulation.run().empty());
+        const SetupResult result = check_setup(setup, golden, simulation);
+        INFO(result.first_wrong);
+        CHECK(result.wrong() > 0);
+        CHECK_THAT(result.first_wrong, Contains(fault.noticed));
+    });
+
+struct DerivedTable {
+    std::string name, settings;
+};
+
+/// Jobs whose tables golden derives without a difference.
+const testing::CaseTable derived_tables(
+    "golden derives the table of a ",
+    {DerivedTable{"lattice that repeats", "map.width=64 map.height=48 map.address_u=repeat map.address_v=repeat"},
+     {"lattice with entries of 6 bits", "formats.rank_bits=6 formats.bound_bits=6 mesh.spacing=64"},
+     {"lattice with bounds alone, of 16 bits", "formats.rank_bits=0 formats.bound_bits=16"},
+     {"plane off the lattice", "mesh.source=plane mesh.columns=2 mesh.rows=2 map.width=20 map.height=12"},
+     {"cylinder", "mesh.source=cylinder mesh.columns=8 mesh.rows=2 map.width=32 map.height=8 map.address_u=repeat"},
+     {"lattice seen from near",
+      "hardware.test_order=cheap_first tests.rank_view=per_point camera.eye=[0.2,0.3,0.5] camera.target=[0.5,0.5,0]"},
+     {"Curvature Test on a lattice that repeats", "hardware.height_test=curvature map.width=64 map.address_u=repeat"},
+     {"Curvature Test of a flat map", "hardware.height_test=curvature map.source=constant"}},
+    [](const DerivedTable& row) {
+        SetupRun run{testing::with_settings(
+            {},
+            "map.source=noise mesh.source=lattice mesh.spacing=16 map.width=60 map.height=44 formats.bound_bits=8 "
+            "hardware.height_test=rank hardware.triangulation=greatest_rank tests.normal=false tests.view=false " +
+                row.settings +
+                (row.settings.find("curvature") != std::string::npos ? " hardware.triangulation=shorter" : ""))};
+        const SetupResult result = run.check();
+        INFO(result.first_wrong);
+        CHECK(result.passed());
+        CHECK(result.parts.size() == 6);
+    });
+
+}  // namespace
