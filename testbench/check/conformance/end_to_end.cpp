@@ -151,7 +151,7 @@ GoldenRun::GoldenRun(const MachineSetup& setup, const GoldenJob& golden,
     for (const std::uint32_t triangle : base_triangles) {
         auto& corners = base_.emplace_back();
         for (std::size_t k = 0; k < 3; ++k) {
-            corners[k] = golden.vertex(golden.mesh().triangles[triangle][k]);
+            corners[k] = golden.vertex(triangle, k);
             corners[k].texture = golden::on_grid(corners[k].texture, step);
         }
     }

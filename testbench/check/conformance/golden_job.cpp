@@ -39,8 +39,17 @@ golden::RankView golden_rank_view(RankView view) {
                                          : golden::RankView::none;
 }
 
-glm::dvec2 texel_size(const BaseMesh& mesh, const HeightMap& map, double scale) {
-    return scale * glm::dvec2(mesh.texture_scale.mean_u, mesh.texture_scale.mean_v) / glm::dvec2(map.width, map.height);
+golden::BaseFrames frames_of(const BaseMesh& mesh) {
+    std::vector<golden::BasePoint> points;
+    points.reserve(mesh.vertices.size());
+    for (const BaseVertex& vertex : mesh.vertices)
+        points.push_back({vertex.position, vertex.normal, vertex.texture});
+    return golden::derive_frames(points, mesh.triangles);
+}
+
+/// `size`: of the whole map, model units.
+glm::dvec2 texel_size(const glm::dvec2& size, const HeightMap& map, double scale) {
+    return scale * size / glm::dvec2(map.width, map.height);
 }
 
 /// Whole texels; with interpolated heights half texels, on the axes that texture coordinates can halve.
@@ -63,13 +72,13 @@ double largest_rounding(const HeightMap& map, const golden::Scene& scene) {
     return largest;
 }
 
-golden::Scene make_scene(const Job& job, const BaseMesh& mesh, const HeightMap& map, const ModelScale& model_scale) {
+golden::Scene make_scene(const Job& job, const glm::dvec2& size, const HeightMap& map, const ModelScale& model_scale) {
     golden::Scene scene;
     const Job::Camera& camera = job.camera;
     scene.camera = {vector(camera.eye),   vector(camera.target), vector(camera.up),
                     camera.field_of_view, camera.near_plane,     {camera.viewport_width, camera.viewport_height}};
     scene.placement = {model_scale.centre, model_scale.scale};
-    const glm::dvec2 texel = texel_size(mesh, map, model_scale.scale);
+    const glm::dvec2 texel = texel_size(size, map, model_scale.scale);
     scene.texel_area = texel.x * texel.y;
     scene.lowest = displacement_of(map.range_low, job, map);
     scene.highest = displacement_of(map.range_high, job, map);
@@ -101,7 +110,7 @@ golden::Scene make_scene(const Job& job, const BaseMesh& mesh, const HeightMap& 
     return scene;
 }
 
-golden::Map make_map(const Job& job, const HeightMap& height_map, const BaseMesh& mesh, const golden::Scene& scene,
+golden::Map make_map(const Job& job, const HeightMap& height_map, const glm::dvec2& size, const golden::Scene& scene,
                      double scale_per_code) {
     std::vector<double> codes;
     codes.reserve(height_map.values.size());
@@ -109,7 +118,7 @@ golden::Map make_map(const Job& job, const HeightMap& height_map, const BaseMesh
         codes.push_back(std::floor(code_at(texel, height_map, scene) + 0.5));
     golden::Map map(height_map.width, height_map.height, golden_mode(job.map.address_u), golden_mode(job.map.address_v),
                     codes);
-    map.derive_normals(scale_per_code, texel_size(mesh, height_map, scene.placement.scale));
+    map.derive_normals(scale_per_code, texel_size(size, height_map, scene.placement.scale));
     return map;
 }
 
@@ -125,9 +134,10 @@ GoldenJob::GoldenJob(const Job& job, const BaseMesh& mesh, const HeightMap& heig
     : job_(resolved(job)),
       mesh_(mesh),
       height_map_(height_map),
-      scene_(make_scene(job_, mesh, height_map, model_scale)),
+      frames_(frames_of(mesh)),
+      scene_(make_scene(job_, frames_.size, height_map, model_scale)),
       parameters_(golden::make_parameters(scene_)),
-      map_(make_map(job_, height_map, mesh, scene_, parameters_.scale)) {
+      map_(make_map(job_, height_map, frames_.size, scene_, parameters_.scale)) {
     set_tables(map_, tables);
     if (job_.hardware.height_test == HeightTest::mipmap)
         map_.make_mipmap(job_.tests.mipmap_filter == MipmapFilter::maximum ? golden::MipmapFilter::maximum
@@ -136,13 +146,14 @@ GoldenJob::GoldenJob(const Job& job, const BaseMesh& mesh, const HeightMap& heig
         parameters_.bound_threshold = std::min(parameters_.bound_threshold, map_.rank_table().highest_bound_threshold);
 }
 
-golden::Vertex GoldenJob::vertex(std::uint32_t index) const {
-    const BaseVertex& given = mesh_.vertices[index];
+golden::Vertex GoldenJob::vertex(std::uint32_t triangle, std::size_t corner) const {
+    const BaseVertex& given = mesh_.vertices[mesh_.triangles[triangle][corner]];
+    const golden::Frame& frame = frames_.corners[triangle][corner];
     golden::Vertex vertex;
     vertex.position = given.position;
     vertex.normal = given.normal;
-    vertex.tangent = given.tangent;
-    vertex.handedness = given.handedness < 0 ? -1 : 1;
+    vertex.tangent = frame.tangent;
+    vertex.handedness = frame.handedness;
     return golden::place_vertex(vertex, given.texture, scene_.placement, map_, mesh_.beyond_map);
 }
 

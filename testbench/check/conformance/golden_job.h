@@ -2,6 +2,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "golden/golden_frames.h"
 #include "golden/golden_setup.h"
 #include "testbench/job/job.h"
 #include "testbench/machine/machine_setup.h"
@@ -10,8 +11,8 @@
 
 namespace tessera {
 
-/// The golden model's inputs, derived from a job, its mesh and its map independently of the host. Only the placement of
-/// the model in the world (ModelScale), a free choice, is the host's. setup_check.h compares the host's set-up of the
+/// The golden model's inputs, derived from a job, its mesh and its map independently of the host. What it takes from the
+/// host: the table in golden/ALGORITHM.md section 8. setup_check.h compares the host's set-up of the
 /// same job with this; golden's own run (end_to_end.h) starts from it.
 ///
 /// The map's codes are golden's own, of the job's width; `tessera widths` measures the effect of that width. Memory: 12
@@ -29,8 +30,14 @@ class GoldenJob {
     const golden::Parameters& parameters() const { return parameters_; }
     const golden::Map& map() const { return map_; }
 
-    /// A vertex of the base mesh in the world: the first five members.
-    golden::Vertex vertex(std::uint32_t index) const;
+    /// A triangle's corner in the world: the first five members. Of the mesh it takes position, normal and texture
+    /// coordinates; the frame is golden's own.
+    golden::Vertex vertex(std::uint32_t triangle, std::size_t corner) const;
+    /// Error bounds in double precision: of the components of that tangent, and of a texel's size, relative.
+    double tangent_rounding(std::uint32_t triangle, std::size_t corner) const {
+        return frames_.corners[triangle][corner].rounding;
+    }
+    double texel_rounding() const { return frames_.size_rounding; }
 
     /// World units, along u and v.
     glm::dvec2 texel_size() const;
@@ -42,6 +49,7 @@ class GoldenJob {
     Job job_;
     const BaseMesh& mesh_;
     const HeightMap& height_map_;
+    golden::BaseFrames frames_;
     golden::Scene scene_;
     golden::Parameters parameters_;
     golden::Map map_;

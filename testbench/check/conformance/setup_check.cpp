@@ -131,11 +131,12 @@ class RegisterCheck {
     /// The largest area in texels, over base triangles, of a triangle's widest times its highest rectangle.
     double largest_rectangle() const {
         double largest = 0;
-        for (const auto& corners : golden_.mesh().triangles) {
+        for (std::uint32_t triangle = 0; triangle < golden_.mesh().triangles.size(); ++triangle) {
             golden::Rectangle both;
             for (std::size_t k = 0; k < 3; ++k) {
                 const auto texture = [&](std::size_t corner) {
-                    return golden::on_grid(golden_.vertex(corners[corner]).texture, 1 / lsb_per_unit(formats_.texture));
+                    return golden::on_grid(golden_.vertex(triangle, corner).texture,
+                                           1 / lsb_per_unit(formats_.texture));
                 };
                 const golden::Rectangle size = golden_.map().rectangle_size(texture(k), texture((k + 1) % 3));
                 both.width = std::max(both.width, size.width);
@@ -282,7 +283,7 @@ class RegisterCheck {
                                    int bits) {
             const double most = std::ldexp(1.0, bits - 1);
             judge_.judge(name, number(hardware), std::clamp(golden - octaves * per_octave, -most, most - 1),
-                         rounded_down, double_rounding * most);
+                         rounded_down, double_rounding * most + 2 * per_octave * golden_.texel_rounding());
         };
         if (formats_.rank_bits > 0)
             threshold("tests.rank_threshold", tests.rank_threshold, golden::rank_threshold(scene),
@@ -371,12 +372,11 @@ class BaseCheck {
           judge_(result, "base vertices", "every field of every base triangle's vertices, to nearest") {}
 
     void run() {
-        const auto& mesh = golden_.mesh().triangles;
         std::size_t next = 0;
-        for (std::uint32_t triangle = 0; triangle < mesh.size(); ++triangle) {
-            const std::array<golden::Vertex, 3> corners = {golden_.vertex(mesh[triangle][0]),
-                                                           golden_.vertex(mesh[triangle][1]),
-                                                           golden_.vertex(mesh[triangle][2])};
+        for (std::uint32_t triangle = 0; triangle < golden_.mesh().triangles.size(); ++triangle) {
+            Corners corners;
+            for (std::size_t k = 0; k < 3; ++k)
+                corners[k] = {golden_.vertex(triangle, k), golden_.tangent_rounding(triangle, k)};
             if (may_collapse(corners) && (next == setup_.base_triangles.size() || !is(next, corners)))
                 continue;
             if (next == setup_.base_triangles.size()) {
@@ -393,13 +393,17 @@ class BaseCheck {
     }
 
   private:
-    using Corners = std::array<golden::Vertex, 3>;
+    struct Corner {
+        golden::Vertex vertex;
+        double tangent_rounding;
+    };
+    using Corners = std::array<Corner, 3>;
 
     /// Whether rounding may have merged two corners in both formats: they are less than an LSB apart.
     bool may_collapse(const Corners& corners) const {
         const double position = lsb_per_unit(formats_.position), texture = lsb_per_unit(formats_.texture);
         for (std::size_t k = 0; k < 3; ++k) {
-            const golden::Vertex &a = corners[k], &b = corners[(k + 1) % 3];
+            const golden::Vertex &a = corners[k].vertex, &b = corners[(k + 1) % 3].vertex;
             if (glm::all(glm::lessThanEqual(glm::abs(a.position - b.position) * position, glm::dvec3(1))) &&
                 glm::all(glm::lessThanEqual(glm::abs(a.texture - b.texture) * texture, glm::dvec2(1))))
                 return true;
@@ -427,13 +431,13 @@ class BaseCheck {
         glm::dvec2 periods(0);
         for (std::size_t k = 0; k < 3; ++k) {
             const datapath::Vertex& hardware = triangle.vertices[k];
-            const golden::Vertex& golden = corners[k];
+            const golden::Vertex& golden = corners[k].vertex;
             const auto name = [&](const char* field) {
                 return [index, k, field] { return fmt::format("triangle {}, vertex {}, {}", index, k, field); };
             };
             const double position = lsb_per_unit(formats_.position);
-            const auto nearest = [&](const char* field, double value, double expected) {
-                judge_.judge(name(field), value, expected, to_nearest, double_rounding * std::abs(expected));
+            const auto nearest = [&](const char* field, double value, double expected, double leeway = 0) {
+                judge_.judge(name(field), value, expected, to_nearest, double_rounding * std::abs(expected) + leeway);
             };
             nearest("position.x", hardware.position.x, golden.position.x * position);
             nearest("position.y", hardware.position.y, golden.position.y * position);
@@ -442,9 +446,10 @@ class BaseCheck {
             nearest("normal.x", hardware.normal.x, golden.normal.x * normal);
             nearest("normal.y", hardware.normal.y, golden.normal.y * normal);
             nearest("normal.z", hardware.normal.z, golden.normal.z * normal);
-            nearest("tangent.x", hardware.tangent.x, golden.tangent.x * normal);
-            nearest("tangent.y", hardware.tangent.y, golden.tangent.y * normal);
-            nearest("tangent.z", hardware.tangent.z, golden.tangent.z * normal);
+            const double rounding = corners[k].tangent_rounding * normal;
+            nearest("tangent.x", hardware.tangent.x, golden.tangent.x * normal, rounding);
+            nearest("tangent.y", hardware.tangent.y, golden.tangent.y * normal, rounding);
+            nearest("tangent.z", hardware.tangent.z, golden.tangent.z * normal, rounding);
             judge_.judge(name("handedness"), hardware.handedness, golden.handedness, exact);
             judge_.judge(name("generation"), hardware.generation, 0, exact);
             judge_.judge(name("displaced_known"), number(hardware.displaced_known), 0, exact);

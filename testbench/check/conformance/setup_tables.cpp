@@ -108,7 +108,7 @@ class TableCheck {
         const double lsb = lsb_per_unit(format);
         const double full = std::abs(golden_.parameters().scale) * (golden_.scene().highest_code + 1) *
                             lsb_per_unit(registers_.formats.position);
-        const double slope_error = (full > 0 ? 0.5 / full : 0) + double_rounding;
+        const double slope_error = (full > 0 ? 0.5 / full : 0) + double_rounding + golden_.texel_rounding();
         each_entry(judge, host_.normal_map, registers_.normal_map, map.width(), map.height(),
                    [&](std::uint32_t x, std::uint32_t y, std::uint64_t entry) {
                        const glm::dvec2 slope = map.slope(texel_of(x, y));

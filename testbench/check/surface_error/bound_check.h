@@ -30,6 +30,7 @@ struct BoundResult {
     glm::dvec2 worst_texel{0};  ///< its place on the surface
     std::string remedy;         ///< what to set, for rounding
 
+    bool empty() const { return points == 0; }
     bool passed() const { return verdict != Verdict::fault; }
     std::string text() const;  ///< one sentence
 };

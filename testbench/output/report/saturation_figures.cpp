@@ -21,6 +21,11 @@ std::string spoken(const char* name) {
 std::vector<SaturationFigure> saturation_figures(const MachineSetup& setup, const datapath::Saturations& saturations) {
     const InputSaturations& input = setup.input_saturations;
     const char* const fault = "the set-up scales to this format, so this is a fault of tessera: report it with the job";
+    const auto no_tangent = [](const datapath::Triangle& triangle) {
+        return std::any_of(triangle.vertices.begin(), triangle.vertices.end(),
+                           [](const datapath::Vertex& v) { return v.tangent == datapath::Direction{}; });
+    };
+    const bool without_tangents = std::any_of(setup.base_triangles.begin(), setup.base_triangles.end(), no_tangent);
     return {
         {"input_position", input.position, "value", "components of base vertices beyond the position's format", fault},
         {"input_normal", input.normal, "value",
@@ -37,8 +42,12 @@ std::vector<SaturationFigure> saturation_figures(const MachineSetup& setup, cons
          fault},
         {"screen_normal", saturations.screen_normal, "value", "N's beyond the normal's format", fault},
         {"degenerate_normal", saturations.degenerate_normal, "value", "zero vectors that stayed zero",
-         "the normals or tangents at an edge's ends are opposite: raise mesh.columns and mesh.rows, or in a mesh's file "
-         "remove the normals (vn) or the mirrored texture coordinates"},
+         without_tangents
+             ? nullptr
+             : "the normals or tangents at an edge's ends are opposite: raise mesh.columns and mesh.rows, or in a mesh's file "
+                    "remove the normals (vn) or the mirrored texture coordinates",
+         without_tangents ? "most are tangents between points of the base mesh that have none, see the notes on it"
+                          : nullptr},
         {"generation", saturations.generation, "value",
          "generations of inserted vertices beyond their field: only with the Generation Test off",
          "set tests.generation = true"},

@@ -19,7 +19,8 @@ void promise_vertex(const BaseVertex& v) {
     for (int k = 0; k < 2; ++k)
         promise(std::isfinite(v.texture[k]), "a texture coordinate is not finite");
     promise(std::abs(safe_length(v.normal) - 1) < rounding, "a normal is not of unit length");
-    promise(std::abs(safe_length(v.tangent) - 1) < rounding, "a tangent is not of unit length");
+    promise(std::abs(safe_length(v.tangent) - 1) < rounding || v.tangent == glm::dvec3(0),
+            "a tangent is neither of unit length nor zero");
     promise(std::abs(glm::dot(v.normal, v.tangent)) < rounding, "a tangent is not perpendicular to its normal");
     promise(v.handedness == 1 || v.handedness == -1, "a handedness is neither 1 nor -1");
 }

@@ -12,7 +12,7 @@ namespace tessera {
 struct BaseVertex {
     glm::dvec3 position{0};
     glm::dvec3 normal{0};   ///< unit length
-    glm::dvec3 tangent{0};  ///< unit length, dp/du orthogonalised against the normal
+    glm::dvec3 tangent{0};  ///< unit length, dp/du orthogonalised against the normal, or 0
     double handedness = 1;  ///< +1 or -1: bitangent = handedness * cross(normal, tangent)
     glm::dvec2 texture{0};  ///< u, v as in the file: 0..1 spans the map once; v = 0 is the bottom row
 };

@@ -15,28 +15,32 @@ inline PositionKey position_key(const glm::dvec3& p) {
     return {alike_bits(p.x), alike_bits(p.y), alike_bits(p.z)};
 }
 
-/// For every key, the index of the first key equal to it. Linear time; the result depends on the keys only.
-/// Takes fewer than 2^31 keys.
-template <std::size_t N>
-std::vector<std::uint32_t> first_equal(const std::vector<std::array<std::uint64_t, N>>& keys) {
+/// For each of `count` keys, the index of the first key equal to it; key_of(index): an array of 64 bit words. Linear time;
+/// the result depends on the keys only. Takes fewer than 2^31 keys.
+template <class KeyOf>
+std::vector<std::uint32_t> first_equal_of(std::size_t count, KeyOf key_of) {
     const auto hash_of = [&](std::size_t i) {
         std::uint64_t hash = 0;
-        for (const std::uint64_t word : keys[i])
+        for (const std::uint64_t word : key_of(i))
             hash = mix_hash(hash, word);
         return hash;
     };
     DistinctTable table;
     std::vector<std::uint32_t> distinct, first;
-    first.reserve(keys.size());
-    for (std::size_t i = 0; i < keys.size(); ++i) {
+    first.reserve(count);
+    for (std::size_t i = 0; i < count; ++i) {
         const std::uint32_t number = table.number_of(
-            hash_of(i), [&](std::uint32_t k) { return keys[distinct[k]] == keys[i]; },
+            hash_of(i), [&](std::uint32_t k) { return key_of(distinct[k]) == key_of(i); },
             [&](std::uint32_t k) { return hash_of(distinct[k]); });
         if (number == distinct.size())
             distinct.push_back(static_cast<std::uint32_t>(i));
         first.push_back(distinct[number]);
     }
     return first;
+}
+template <std::size_t N>
+std::vector<std::uint32_t> first_equal(const std::vector<std::array<std::uint64_t, N>>& keys) {
+    return first_equal_of(keys.size(), [&](std::size_t i) -> const std::array<std::uint64_t, N>& { return keys[i]; });
 }
 
 /// The same for items that have the keys key_of(item).

@@ -5,12 +5,14 @@ namespace tessera {
 
 /// Gives every vertex its tangent and handedness (golden/ALGORITHM.md section 6).
 ///
-/// Each triangle adds its direction of dp/du, weighted by its area, to its vertices; the sum is orthogonalised
-/// against the normal and normalised. Vertices of equal position and normal (bit for bit, -0 = +0) share one
-/// frame, so a texture seam stays closed. Handedness is that of the majority of triangles, or +1 for a tie.
+/// Triangles on both sides of an edge share frames at its ends if position, normal and texture coordinates agree there,
+/// the latter up to the same whole periods at both ends: only such an edge stays closed in the displaced surface. Each
+/// triangle adds its direction of dp/du, weighted by its area; the sum is orthogonalised against the normal and
+/// normalised. A vertex whose triangles have several frames is copied, one copy a frame.
 ///
-/// Repairs, each counted in one sentence of mesh.repairs: no dp/du at a vertex, or directions that cancel (a pole),
-/// where a fixed perpendicular of the normal is used; texture mirrored across a vertex.
+/// The tangent is zero where nothing defines it: no dp/du, directions that cancel (a pole), or triangles mirrored in
+/// texture space and others in one frame. Midpoints towards other vertices then have their tangent, which is right on
+/// both sides. Each of these is counted in a sentence of mesh.repairs.
 /// Needs positions, unit normals, texture coordinates and triangles of non-zero area.
 void complete_tangent_frames(BaseMesh& mesh);
 

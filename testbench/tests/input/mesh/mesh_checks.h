@@ -49,7 +49,7 @@ inline void require_complete(const BaseMesh& mesh) {
     }
     for (const BaseVertex& v : mesh.vertices) {
         bad_frames += !(std::abs(safe_length(v.normal) - 1) < 1e-14) ||
-                      !(std::abs(safe_length(v.tangent) - 1) < 1e-14) ||
+                      !(std::abs(safe_length(v.tangent) - 1) < 1e-14 || v.tangent == glm::dvec3(0)) ||
                       !(std::abs(glm::dot(v.normal, v.tangent)) < 1e-14) || std::abs(v.handedness) != 1;
         bad_values += !std::isfinite(v.position.x + v.position.y + v.position.z + v.texture.x + v.texture.y);
     }
