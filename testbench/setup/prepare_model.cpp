@@ -16,6 +16,7 @@
 #include "testbench/setup/model_scale.h"
 #include "testbench/setup/table_layout.h"
 #include "testbench/setup/tables/table_extent.h"
+#include "testbench/setup/texel_spread.h"
 #include "testbench/setup/thresholds.h"
 #include "testbench/setup/view.h"
 
@@ -135,6 +136,10 @@ PreparedScene prepare_model(const SceneSettings& settings, const BaseMesh& mesh,
         std::ldexp(static_cast<double>(registers.displacement.scale), -formats.position.fraction - scene.map.bits);
     scene.texel_size = {mesh.texture_scale.mean_u / registers.map.width * scene.scale,
                         mesh.texture_scale.mean_v / registers.map.height * scene.scale};
+
+    scene.texel_spread = measure_texel_spread(mesh, scene);
+    if (std::string remark = texel_spread_remark(scene.texel_spread); !remark.empty())
+        scene.remarks.push_back(std::move(remark));
 
     round_base_triangles(mesh, model_scale, scene);
     scene.largest_rectangle_sum =

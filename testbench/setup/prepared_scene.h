@@ -23,6 +23,17 @@ struct InputSaturations {
     std::uint64_t registers = 0;  ///< displacement's scale and bias, directions of view and light
 };
 
+/// Sizes and axes of texels on the triangles against the one size, with perpendicular axes, that the normal map is made for,
+/// and what it does to N'.
+struct TexelSpread {
+    static constexpr double noticeable = 2;  ///< degrees; what N' of a mesh with one size is right to
+
+    std::array<double, 2> mean{1, 1}, smallest{1, 1}, largest{1, 1};  ///< |dp/du|, |dp/dv|: model units per map
+    double shear = 0;                                                 ///< most that dp/du, dp/dv miss 90 degrees by
+    double median_error = 0, largest_error = 0;                       ///< of N', degrees
+    double wrong_percent = 0;  ///< of the surface, where N' is off by more than `noticeable`
+};
+
 /// The host's data: everything rounded to the hardware's formats.
 struct PreparedScene {
     datapath::Registers registers;
@@ -45,6 +56,7 @@ struct PreparedScene {
     std::uint64_t base_dropped = 0;           ///< triangles of which two vertices coincide after rounding
     std::uint64_t texture_clamped = 0;        ///< vertices whose u or v lay outside a clamped map
     InputSaturations input_saturations;
+    TexelSpread texel_spread;
     std::vector<std::string> remarks;  ///< one sentence each, for a report
     bool bound_asked = false;          ///< tests.bound_threshold is asked for
     bool bound_promised = false;       ///< and all its conditions are met (bound_promise.h)

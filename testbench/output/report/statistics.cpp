@@ -92,6 +92,24 @@ void cache_figures(std::vector<Figure>& all, const char* name, const Simulation&
     c.add("bytes_fetched_per_triangle", ratio(bytes, finished), "byte/triangle", "per finished triangle");
 }
 
+void texel_figures(std::vector<Figure>& all, const TexelSpread& spread) {
+    FigureGroup c(all, "texels");
+    const auto sizes = [&](const std::string& axis, std::size_t k) {
+        c.add("mean_" + axis, spread.mean[k], "model/map",
+              "length of a whole map along " + axis +
+                  ", mean over the base mesh: the one size that normals are made for");
+        c.add("smallest_" + axis, spread.smallest[k], "model/map", "likewise, on the triangle where it is smallest");
+        c.add("largest_" + axis, spread.largest[k], "model/map", "likewise, largest");
+    };
+    sizes("u", 0);
+    sizes("v", 1);
+    c.add("largest_shear", spread.shear, "degree", "by which the map's axes on a triangle are not perpendicular");
+    c.add("median_normal_error", spread.median_error, "degree", "of N', from the one size, over the surface");
+    c.add("largest_normal_error", spread.largest_error, "degree", "likewise, largest");
+    c.add("wrong_normals", spread.wrong_percent, "percent",
+          fmt::format("of the surface, where that error is above {} degrees", TexelSpread::noticeable));
+}
+
 void host_figures(std::vector<Figure>& all, const MachineSetup& setup, std::uint64_t finished, std::uint64_t vertices) {
     const datapath::Widths widths = datapath::stream_widths(setup.registers.formats);
     const auto bytes = [](std::uint64_t bits) { return (bits + 7) / 8; };
@@ -220,6 +238,7 @@ std::vector<Figure> collect_statistics(const MachineSetup& setup, const Simulati
         evaluated.summed_height = 0;
     useful_work_figures(all, totals, evaluated, mesh);
     host_figures(all, setup, counts.finished, mesh.vertices);
+    texel_figures(all, setup.texel_spread);
 
     FigureGroup get(all, "get_triangle");
     get.add("host_triangles", totals.host_triangles, "triangle", "taken from the host");

@@ -1,0 +1,143 @@
+#include "testbench/setup/texel_spread.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "testbench/setup/mesh/texture_gradient.h"
+
+namespace tessera {
+
+namespace {
+
+constexpr double degrees = 57.29577951308232;
+
+/// Parts of the surface by the error of N' there.
+class Errors {
+  public:
+    void add(double error, double area) {
+        const auto step = static_cast<std::size_t>(error * steps_per_degree);
+        areas_[std::min(step, areas_.size() - 1)] += area;
+        total_ += area;
+        largest_ = std::max(largest_, error);
+    }
+    double median() const {
+        double sum = 0;
+        for (std::size_t k = 0; k < areas_.size(); ++k)
+            if ((sum += areas_[k]) > 0.5 * total_)
+                return static_cast<double>(k) / steps_per_degree;
+        return 0;
+    }
+    double largest() const { return largest_; }
+    double percent_beyond(double error) const {
+        double sum = 0;
+        for (auto k = static_cast<std::size_t>(error * steps_per_degree); k < areas_.size(); ++k)
+            sum += areas_[k];
+        return total_ > 0 ? 100 * sum / total_ : 0;
+    }
+
+  private:
+    static constexpr int steps_per_degree = 100;
+    std::array<double, 180 * steps_per_degree> areas_{};
+    double total_ = 0, largest_ = 0;
+};
+
+/// dp/du and dp/dv of one texel, world units, on axes along dp/du and perpendicular to it: (u, 0) and (across, up).
+struct TexelAxes {
+    double u, across, up;
+};
+
+TexelAxes texel_axes(const TextureGradient& gradient, const PreparedScene& scene) {
+    const datapath::MapGeometry& map = scene.registers.map;
+    const glm::dvec3 u = unit_or_zero(gradient.dp_du);
+    const double across = glm::dot(gradient.dp_dv, u), up = safe_length(gradient.dp_dv - u * across);
+    const double per_u = scene.scale / map.width, per_v = scene.scale / map.height;
+    return {safe_length(gradient.dp_du) * per_u, across * per_v, up * per_v};
+}
+
+/// Degrees between the normals of a surface that rises by the given heights per texel.
+double error_of(const glm::dvec2& rise, const TexelAxes& own, const std::array<double, 2>& given) {
+    const double along = rise.x / own.u;
+    const glm::dvec3 right(-along, -(rise.y - along * own.across) / own.up, 1);
+    const glm::dvec3 used(-rise.x / given[0], -rise.y / given[1], 1);
+    return degrees * std::atan2(glm::length(glm::cross(right, used)), glm::dot(right, used));
+}
+
+/// Heights per texel at a texture coordinate in texels, by the normal map.
+glm::dvec2 rise_at(const glm::dvec2& t, const PreparedScene& scene) {
+    const datapath::MapGeometry& map = scene.registers.map;
+    const auto texel = [](double value, std::uint32_t size, datapath::AddressMode mode) {
+        const double index = std::floor(value), last = size - 1.0;
+        const double inside = mode == datapath::AddressMode::repeat ? index - std::floor(index / size) * size : index;
+        return static_cast<std::uint32_t>(std::clamp(inside, 0.0, last));
+    };
+    const datapath::Direction n =
+        map_normal(scene.map, texel(t.x, map.width, map.address_u), texel(t.y, map.height, map.address_v),
+                   scene.height_per_code, scene.texel_size, scene.registers.formats.normal);
+    const double up = std::max(n.z, 1);
+    return {-n.x / up * scene.texel_size[0], -n.y / up * scene.texel_size[1]};
+}
+
+/// Calls use(t) at the centres of `parts` * `parts` equal parts of a triangle.
+template <class Use>
+void each_part(const std::array<glm::dvec2, 3>& t, int parts, Use use) {
+    const auto at = [&](int i, int j, double inside) {
+        const double a = (i + inside) / parts, b = (j + inside) / parts;
+        use(t[0] + a * (t[1] - t[0]) + b * (t[2] - t[0]));
+    };
+    for (int i = 0; i < parts; ++i)
+        for (int j = 0; i + j < parts; ++j) {
+            at(i, j, 1 / 3.0);
+            if (i + j + 1 < parts)
+                at(i, j, 2 / 3.0);
+        }
+}
+
+}  // namespace
+
+TexelSpread measure_texel_spread(const BaseMesh& mesh, const PreparedScene& scene) {
+    constexpr std::size_t most_points = 1 << 16;
+    const BaseMesh::TextureScale& scale = mesh.texture_scale;
+    TexelSpread spread;
+    spread.mean = {scale.mean_u, scale.mean_v};
+    spread.smallest = {scale.smallest_u, scale.smallest_v};
+    spread.largest = {scale.largest_u, scale.largest_v};
+    const std::size_t stride = 1 + mesh.triangles.size() / most_points;
+    const double each = static_cast<double>(most_points) / static_cast<double>(1 + mesh.triangles.size() / stride);
+    const int parts = std::max(1, static_cast<int>(std::sqrt(each)));
+    const glm::dvec2 texels(scene.registers.map.width, scene.registers.map.height);
+    Errors errors;
+    for (std::size_t k = 0; k < mesh.triangles.size(); k += stride) {
+        const auto& triangle = mesh.triangles[k];
+        const auto gradient = texture_gradient(mesh, triangle);
+        if (!gradient)
+            continue;
+        const TexelAxes own = texel_axes(*gradient, scene);
+        spread.shear = std::max(spread.shear, degrees * std::atan2(std::abs(own.across), own.up));
+        std::array<glm::dvec2, 3> corners;
+        for (std::size_t corner = 0; corner < 3; ++corner)
+            corners[corner] = mesh.vertices[triangle[corner]].texture * texels;
+        each_part(corners, parts, [&](const glm::dvec2& t) {
+            errors.add(error_of(rise_at(t, scene), own, scene.texel_size), gradient->area);
+        });
+    }
+    spread.median_error = errors.median();
+    spread.largest_error = errors.largest();
+    spread.wrong_percent = errors.percent_beyond(TexelSpread::noticeable);
+    return spread;
+}
+
+std::string texel_spread_remark(const TexelSpread& spread) {
+    if (spread.wrong_percent <= 1)
+        return {};
+    return fmt::format(
+        "one texel size serves the whole mesh, but its triangles spread the map differently: a whole map is {:.3g} to "
+        "{:.3g} model units wide (mean {:.3g}) and {:.3g} to {:.3g} high (mean {:.3g}), and its axes are up to {:.2g} "
+        "degrees from perpendicular. Normals are off by more than {} degrees on {:.2g} % of the surface (median {:.3g}, "
+        "at most {:.3g} degrees); heights are right. Unwrap the mesh with one texel density and without shear",
+        spread.smallest[0], spread.largest[0], spread.mean[0], spread.smallest[1], spread.largest[1], spread.mean[1],
+        spread.shear, TexelSpread::noticeable, spread.wrong_percent, spread.median_error, spread.largest_error);
+}
+
+}  // namespace tessera
