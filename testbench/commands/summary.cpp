@@ -85,6 +85,18 @@ std::string checks_rows(const Checks& checks) {
         text += check_row("invariants", i,
                           fmt::format("{} cracks, {} T-vertices{}; in texture space {} collapsed, {} turned over",
                                       i.cracks, i.t_vertices, wrong, i.collapsed, i.turned_over));
+        if (i.open_crease_edges > 0)
+            text +=
+                row("creases",
+                    fmt::format(
+                        "{} edges open: the two sides of the base mesh have different normals there; give it smooth "
+                        "ones{}",
+                        count(i.open_crease_edges),
+                        i.open_crease_edges_of_seams == 0
+                            ? std::string()
+                            : fmt::format(" (at {} the texture coordinates differ too: there the map must be alike on "
+                                          "both sides as well)",
+                                          count(i.open_crease_edges_of_seams))));
         if (i.open_texture_seam_edges > 0)
             text +=
                 row("texture seams",

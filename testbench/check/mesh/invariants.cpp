@@ -93,8 +93,8 @@ std::vector<InvariantFigure> invariant_figures(const InvariantResult& r) {
         {"border_base_edges", Kind::fact, r.border_base_edges, "edge", "of these, with one base triangle"},
         {"non_manifold_base_edges", Kind::fact, r.non_manifold_base_edges, "edge", "of these, with more than two"},
         {"texture_seams", Kind::fact, r.texture_seams, "edge",
-         "base edges whose two sides differ in texture coordinates, not by whole periods"},
-        {"creases", Kind::fact, r.creases, "edge", "base edges whose two sides differ in normal or tangent only"},
+         "base edges whose two sides have the same normals, but texture coordinates that differ, not by whole periods"},
+        {"creases", Kind::fact, r.creases, "edge", "base edges whose two sides differ in normal, or in tangent only"},
         {"t_vertices", Kind::violation, r.t_vertices, "vertex",
          "on an edge that another of its triangles does not split"},
         {"cracks", Kind::violation, r.cracks, "edge", "without the expected triangles on either side"},
@@ -117,6 +117,8 @@ std::vector<InvariantFigure> invariant_figures(const InvariantResult& r) {
          "emitted edges along texture seams that do not meet: the map, or a table made from it, is not continuous there"},
         {"open_crease_edges", Kind::input, r.open_crease_edges, "edge",
          "likewise along creases: the base mesh's normals or tangents are not continuous"},
+        {"open_crease_edges_of_seams", Kind::input, r.open_crease_edges_of_seams, "edge",
+         "of these, where texture coordinates differ as well, so that the map may open the edge too"},
     };
 }
 

@@ -22,8 +22,9 @@ struct InvariantResult {
     std::uint64_t base_edges = 0;               ///< distinct by P; edges of zero length excluded
     std::uint64_t border_base_edges = 0;        ///< of one base triangle
     std::uint64_t non_manifold_base_edges = 0;  ///< of more than two
-    std::uint64_t texture_seams = 0;  ///< base edges whose sides differ in t by other than whole periods; not joined
-    std::uint64_t creases = 0;        ///< base edges whose sides agree in t but not in N, T; not joined
+    /// Base edges whose sides are not joined: texture seams agree in N, but t differs by other than whole periods; the
+    /// others are creases.
+    std::uint64_t texture_seams = 0, creases = 0;
 
     // Violations: 0 in a correct run.
     std::uint64_t t_vertices = 0;
@@ -43,6 +44,7 @@ struct InvariantResult {
     // Caused by the input: pieces of texture seams and creases that do not meet, counted on the finer side.
     std::uint64_t open_texture_seam_edges = 0;
     std::uint64_t open_crease_edges = 0;
+    std::uint64_t open_crease_edges_of_seams = 0;  ///< of these, where t differs as well
 
     /// Text of the first violation; one in the bare datapath's mesh precedes differences of the emitted mesh. Empty if
     /// none.

@@ -290,9 +290,14 @@ void Lineage::compare_base_edges() {
                 const auto way = [&](const Side& s) { return s.along ? ways_[s.edge] : ways_[s.edge].turned(); };
                 const bool textures_agree =
                     same_texture(begin_of(*lone).texture, begin_of(side).texture) && way(*lone) == way(side);
-                (textures_agree ? crease : seam) = true;
-                (textures_agree ? result_.open_crease_edges : result_.open_texture_seam_edges) +=
-                    open_pieces(*lone, side);
+                const auto same_normals = [](const Vertex& a, const Vertex& b) { return a.normal == b.normal; };
+                // Different normals open the edge whatever the map holds.
+                const bool is_crease = textures_agree || !same_normals(begin_of(*lone), begin_of(side)) ||
+                                       !same_normals(begin_of(lone->turned()), begin_of(side.turned()));
+                const std::uint64_t open = open_pieces(*lone, side);
+                (is_crease ? crease : seam) = true;
+                (is_crease ? result_.open_crease_edges : result_.open_texture_seam_edges) += open;
+                result_.open_crease_edges_of_seams += is_crease && !textures_agree ? open : 0;
             }
             lone = side;
         }

@@ -53,7 +53,10 @@ class Assembler {
         triangles_ = {};
         text_.corners = {};
         complete_smooth_normals(mesh_);
-        for (std::string& flaw : surface_flaws(mesh_))
+        constexpr const char* smooth_normals =
+            "Export the mesh with smooth normals, or its faces without normals, as in `f 1/1 2/2 3/3`: smooth ones are "
+            "then calculated.";
+        for (std::string& flaw : surface_flaws(mesh_, largest_search, smooth_normals))
             mesh_.repairs.push_back(std::move(flaw));
         complete_tangent_frames(mesh_);
         measure_texture_scale(mesh_);

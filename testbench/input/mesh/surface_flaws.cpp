@@ -159,14 +159,14 @@ void edge_flaws(const BaseMesh& mesh, const std::vector<std::uint32_t>& same_pos
 }
 
 void normal_flaws(const BaseMesh& mesh, const std::vector<std::uint32_t>& same_position,
-                  std::vector<std::string>& flaws) {
+                  std::string_view normals_remedy, std::vector<std::string>& flaws) {
     std::vector<char> several(mesh.vertices.size(), 0);
     for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
         if (mesh.vertices[i].normal != mesh.vertices[same_position[i]].normal)
             several[same_position[i]] = 1;
     if (const auto count = std::count(several.begin(), several.end(), 1); count > 0) {
-        flaws.push_back(
-            fmt::format("{} point(s) have more than one normal: the displaced surface opens there.", count));
+        flaws.push_back(fmt::format("{} point(s) have more than one normal: the displaced surface opens there.{}{}",
+                                    count, normals_remedy.empty() ? "" : " ", normals_remedy));
     }
     std::size_t against = 0;
     for (const auto& t : mesh.triangles) {
@@ -181,11 +181,12 @@ void normal_flaws(const BaseMesh& mesh, const std::vector<std::uint32_t>& same_p
 
 }  // namespace
 
-std::vector<std::string> surface_flaws(const BaseMesh& mesh, std::uint64_t most_steps) {
+std::vector<std::string> surface_flaws(const BaseMesh& mesh, std::uint64_t most_steps,
+                                       std::string_view normals_remedy) {
     const std::vector<std::uint32_t> same_position = first_at_position(mesh.vertices);
     std::vector<std::string> flaws;
     edge_flaws(mesh, same_position, most_steps, flaws);
-    normal_flaws(mesh, same_position, flaws);
+    normal_flaws(mesh, same_position, normals_remedy, flaws);
     return flaws;
 }
 

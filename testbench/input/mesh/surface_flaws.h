@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "testbench/input/mesh/mesh_limits.h"
@@ -16,6 +17,8 @@ namespace tessera {
 /// - several normals at one position: a hard edge
 /// - normals that point against the triangle's winding
 /// Vertices are identified by their positions. Needs positions and unit normals.
-std::vector<std::string> surface_flaws(const BaseMesh& mesh, std::uint64_t most_steps = largest_search);
+/// `normals_remedy`: a sentence added to that on several normals.
+std::vector<std::string> surface_flaws(const BaseMesh& mesh, std::uint64_t most_steps = largest_search,
+                                       std::string_view normals_remedy = {});
 
 }  // namespace tessera

@@ -146,12 +146,15 @@ TEST_CASE("summary: each check is listed with its result") {
     checks.setup->parts = {{"registers", "", 5, 1}};
     checks.allowed_flips = 0.2;
     checks.invariants->open_texture_seam_edges = 9;
+    checks.invariants->open_crease_edges = 12;
+    checks.invariants->open_crease_edges_of_seams = 4;
     const std::string other = summary(run.setup, run.simulation, {}, checks, 1);
     CHECK(value_of(other, "set-up") == "FAILED: 5 values of registers, base vertices and tables compared, 1 wrong");
     CHECK(value_of(other, "golden model") ==
           "FAILED: 2,000 edges compared, 0 mismatches, 5 allowed flips (0.250 %), more than the 0.2 % that "
           "check.allowed_flips allows");
     CHECK_THAT(value_of(other, "texture seams"), Catch::StartsWith("9 edges open: "));
+    CHECK_THAT(value_of(other, "creases"), Catch::StartsWith("12 edges open: ") && Catch::Contains("at 4 the texture"));
 }
 
 TEST_CASE("the run's verdict: one failed part fails it") {
