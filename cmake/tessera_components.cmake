@@ -2,19 +2,13 @@
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
-# tessera_component(NAME FOLDER [OPTIONAL] NEED...): adds the folder of a component if all packages and earlier components
-# it needs exist. If not, an error if TESSERA_COMPONENTS or, unless it is OPTIONAL, the testbench requires it.
+# tessera_component(NAME FOLDER NEED...): adds the folder of a component if all packages and earlier components it needs
+# exist. If not, an error if TESSERA_COMPONENTS or the testbench requires it.
 macro(tessera_component name folder)
   set(tessera_required "")
   set(tessera_missing "")
   set(tessera_needs ${ARGN})
-  if("OPTIONAL" IN_LIST tessera_needs)
-    list(REMOVE_ITEM tessera_needs OPTIONAL)
-    set(tessera_required QUIET)
-  elseif(TESSERA_TESTBENCH)
-    set(tessera_required REQUIRED)
-  endif()
-  if("${name}" IN_LIST TESSERA_COMPONENTS)
+  if(TESSERA_TESTBENCH OR "${name}" IN_LIST TESSERA_COMPONENTS)
     set(tessera_required REQUIRED)
   endif()
   foreach(need ${tessera_needs})
@@ -123,7 +117,7 @@ function(tessera_install_package)
   configure_file(cmake/tessera.pc.in tessera.pc @ONLY)
 
   install(FILES ${PROJECT_BINARY_DIR}/tesseraConfig.cmake ${PROJECT_BINARY_DIR}/tesseraConfigVersion.cmake
-                cmake/FindSystemC.cmake cmake/FindSystemCLanguage.cmake
+                cmake/FindSystemC.cmake
           DESTINATION ${folder} COMPONENT tessera)
   install(FILES ${PROJECT_BINARY_DIR}/tessera.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT tessera)
 endfunction()

@@ -1,5 +1,5 @@
 # Compiler settings of all our targets. They do not apply to clients of the libraries.
-#  * warnings are errors in our code, if tessera is the top-level project; libraries are SYSTEM includes
+#  * with TESSERA_WERROR warnings are errors; libraries are SYSTEM includes
 #  * -fno-plt, -falign-functions: save 5 % of timed mode, which calls the SystemC kernel eight times per edge
 #  * -fmacro-prefix-map: reports give paths relative to the project, and object files are equal in all checkouts
 #  * -mmemcpy-strategy, -mmemset-strategy: gcc copies structures of some hundred bytes, such as a triangle, with
@@ -8,7 +8,7 @@
 add_library(tessera_options INTERFACE)
 target_compile_features(tessera_options INTERFACE cxx_std_17)
 target_compile_options(tessera_options INTERFACE
-  -Wall -Wextra -Wpedantic $<$<BOOL:${PROJECT_IS_TOP_LEVEL}>:-Werror> -Wshadow -Wconversion -Wsign-conversion
+  -Wall -Wextra -Wpedantic $<$<BOOL:${TESSERA_WERROR}>:-Werror> -Wshadow -Wconversion -Wsign-conversion
   $<$<COMPILE_LANGUAGE:CXX>:-Wold-style-cast> $<$<COMPILE_LANGUAGE:CXX>:-Wnon-virtual-dtor> -Wcast-align -ffp-contract=off -fno-plt -falign-functions=32
   -fmacro-prefix-map=${PROJECT_SOURCE_DIR}/=)
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64|amd64")
@@ -50,7 +50,7 @@ if(TESSERA_FUZZ)
     TESSERA_HAS_LIBFUZZER)
   unset(CMAKE_REQUIRED_FLAGS)
   if(NOT TESSERA_HAS_LIBFUZZER)
-    message(FATAL_ERROR "clang does not link with -fsanitize=fuzzer. On Debian 12: apt-get install clang libclang-rt-14-dev")
+    message(FATAL_ERROR "clang does not link with -fsanitize=fuzzer. On Debian: apt-get install clang libclang-rt-dev")
   endif()
   set(fuzz -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_compile_options(tessera_options INTERFACE ${fuzz})

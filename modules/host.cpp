@@ -19,6 +19,8 @@ Host::Host(const sc_core::sc_module_name& name, Pipeline& machine, const std::ve
         SC_THREAD(send_triangles);
 }
 
+Host::~Host() = default;
+
 void Host::bind() {
     to_get_triangle.bind(machine_.get_triangle.from_host);
     displacement_map.bind(machine_.displacement_map.host);

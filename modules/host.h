@@ -33,6 +33,7 @@ class Host : public sc_core::sc_module, public CycleProcess {
     /// bound to the machine by bind().
     Host(const sc_core::sc_module_name& name, Pipeline& machine, const std::vector<datapath::Triangle>& triangles,
          FillTables fill_tables, std::size_t first = 0, std::size_t step = 1);
+    ~Host() override;
 
     void bind();
 

@@ -34,8 +34,9 @@ configured() {
     done
 }
 
-# configure PRESET [-DNAME=VALUE...]
+# configure PRESET [-DNAME=VALUE...]: warnings are errors if TESSERA_WERROR is ON in the environment.
 configure() {
+    set -- "$@" "-DTESSERA_WERROR=${TESSERA_WERROR:-OFF}"
     configured "$@" && return 0
     local fresh=()
     configured "$1" || fresh=(--fresh)

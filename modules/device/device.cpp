@@ -68,6 +68,8 @@ Device::Device(const sc_core::sc_module_name& name, const datapath::Registers& i
     sensitive << interrupt_changed_;
 }
 
+Device::~Device() = default;
+
 void Device::start(const sc_core::sc_time& delay) {
     const datapath::Registers machine = file_.machine();
     status_ &= ~(status_done | status_error);

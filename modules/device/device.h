@@ -66,6 +66,7 @@ class Device : public sc_core::sc_module, private tlm::tlm_analysis_if<datapath:
     /// SC_ERROR if the design or the formats cannot work.
     Device(const sc_core::sc_module_name& name, const datapath::Registers& initial, const DeviceDesign& design,
            UnitFactory* factory = nullptr);
+    ~Device() override;
 
     /// For statistics, and to observe the units. Its registers change at the start of a frame.
     Pipeline& pipeline() { return pipeline_; }

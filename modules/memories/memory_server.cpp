@@ -15,6 +15,8 @@ MemoryServer::MemoryServer(const sc_core::sc_module_name& name, CycleScheduler& 
     host.register_transport_dbg(this, &MemoryServer::host_transport_dbg);
 }
 
+MemoryServer::~MemoryServer() = default;
+
 std::string MemoryServer::describe_contents() const {
     return listed(count_of(queue_.size() + answers_.size(), "request"),
                   waiting_ == 0   ? ""

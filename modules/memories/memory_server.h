@@ -31,6 +31,8 @@ class MemoryServer : public Unit {
     tlm_utils::multi_passthrough_target_socket_optional<MemoryServer, 32, MemoryProtocol> socket{"socket"};
     tlm_utils::passthrough_target_socket_optional<MemoryServer> host{"host"};
 
+    ~MemoryServer() override;
+
     std::uint64_t cycles_held_up() const { return cycles_held_up_; }
     /// No unit's port leads here: what the host writes is an SC_ERROR from now on.
     void has_no_reader() { no_reader_ = true; }

@@ -475,11 +475,19 @@ struct DescriptionOf<datapath::Triangle> {
     using Type = QueuedTriangle;
 };
 
+// Applies a macro to the item of every stream.
+#define TESSERA_FOR_EACH_STREAM_ITEM(macro)                                                                           \
+    macro(datapath::Triangle) macro(QueueLevel) macro(TakenTriangle) macro(GeometryOperands) macro(BasePoint)         \
+        macro(DisplacedPoint) macro(ScreenPoint) macro(ScreenCorner) macro(TestOperands) macro(TexCoordOperands)      \
+            macro(HeightOperands) macro(NormalOperands) macro(ViewOperands) macro(TexCoordResult) macro(HeightResult) \
+                macro(NormalResult) macro(ViewResult) macro(TestedEdge) macro(DecidedTriangle) macro(Family)          \
+                    macro(TriangleToLight) macro(LitTriangle)
+
 template <class ItemOfStream>
 struct ItemType {
     using Item = ItemOfStream;
 };
-template <class... Items>
+template <class Before, class... Items>
 struct ItemTypes {
     template <class Each>
     static void for_each(Each&& each) {
@@ -488,10 +496,9 @@ struct ItemTypes {
 };
 /// The item of every stream: `StreamItems::for_each([](auto type) { using Item = typename decltype(type)::Item; ...
 /// })`.
-using StreamItems = ItemTypes<datapath::Triangle, QueueLevel, TakenTriangle, GeometryOperands, BasePoint,
-                              DisplacedPoint, ScreenPoint, ScreenCorner, TestOperands, TexCoordOperands, HeightOperands,
-                              NormalOperands, ViewOperands, TexCoordResult, HeightResult, NormalResult, ViewResult,
-                              TestedEdge, DecidedTriangle, Family, TriangleToLight, LitTriangle>;
+#define TESSERA_ITEM_AFTER_COMMA(Item) , Item
+using StreamItems = ItemTypes<void TESSERA_FOR_EACH_STREAM_ITEM(TESSERA_ITEM_AFTER_COMMA)>;
+#undef TESSERA_ITEM_AFTER_COMMA
 
 /// Whether a stream's payload describes its fields.
 template <class Item, class = void>

@@ -17,6 +17,8 @@ MemoryPort::MemoryPort(const char* name, std::size_t entry_bytes, bool use_direc
     socket.register_nb_transport_bw(this, &MemoryPort::nb_transport_bw);
 }
 
+MemoryPort::~MemoryPort() = default;
+
 void MemoryPort::check_response(const MemoryRequest& request) const {
     if (request.is_ok())
         return;

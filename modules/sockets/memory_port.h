@@ -29,6 +29,7 @@ class MemoryPort {
 
     /// entry_bytes: at least 1; at most 8 for read() and entry().
     MemoryPort(const char* name, std::size_t entry_bytes, bool use_direct_memory);
+    ~MemoryPort();
 
     /// Functional mode: the entries at these byte addresses, zero-extended. Adds the memory's read time to `delay` for
     /// each of them. count: at most most_rectangle_entries.

@@ -4,6 +4,7 @@
 #include <systemc>
 #include <tlm>
 
+#include "modules/sockets/items.h"
 #include "modules/sockets/stream.h"
 #include "modules/timing/cycle_scheduler.h"
 #include "modules/timing/pending_item.h"
@@ -135,5 +136,9 @@ class StreamInput : public tlm::tlm_target_socket<32, Stream<Payload>>,
     std::uint64_t taken_ = 0;
     RandomStalls stalls_;
 };
+
+#define TESSERA_DECLARE_STREAM(Item) extern template class StreamInput<Item>;  // see stream_instances.cpp
+TESSERA_FOR_EACH_STREAM_ITEM(TESSERA_DECLARE_STREAM)
+#undef TESSERA_DECLARE_STREAM
 
 }  // namespace tessera

@@ -144,4 +144,8 @@ void for_each_output(const sc_core::sc_module& module, Each&& each) {
     }
 }
 
+#define TESSERA_DECLARE_STREAM(Item) extern template class StreamOutput<Item>;  // see stream_instances.cpp
+TESSERA_FOR_EACH_STREAM_ITEM(TESSERA_DECLARE_STREAM)
+#undef TESSERA_DECLARE_STREAM
+
 }  // namespace tessera

@@ -154,7 +154,8 @@ void Stage<In, Out>::start(std::uint64_t cycle) {
         m.asked = m.asked_entries = 0;
         reads(slot.item, m.reads);
         slot.requests = static_cast<std::uint8_t>(m.reads.requests());
-        for (unsigned k = 0; k < m.reads.requests(); ++k) {
+        // The first condition tells the compiler the bound that the second keeps.
+        for (unsigned k = 0; k < Reads::most_requests && k < m.reads.requests(); ++k) {
             slot.port[k] = static_cast<std::uint8_t>(m.reads.port(k));
             slot.count[k] = static_cast<std::uint8_t>(m.reads.count(k));
         }

@@ -37,11 +37,7 @@ struct Design {
     /// Cycles for which a memory that a UnitFactory has joined, or the device's bus, may leave a request unanswered
     /// (sockets/answer_watch.h); 0: no limit.
     unsigned answer_cycles = 1'000'000;
-#ifdef NDEBUG
-    bool packed_streams = false;
-#else
-    bool packed_streams = true;  ///< each item goes through its packed form: slow, but checks that it is complete
-#endif
+    bool packed_streams = false;  ///< each item goes through its packed form: slow, but checks that it is complete
 };
 
 /// Register stages of a pipeline, over all servers. further_stages: cycles that an item spends outside (in a memory)

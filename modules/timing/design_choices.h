@@ -32,16 +32,8 @@ enum class TestOrder {
     cheap_first,  ///< tests without a table first; the others only if the decision still depends on them
 };
 
-// The enumerators' names, in job files and as parameters of CCI. One switch per enumeration, so that the compiler
-// refuses an enumerator without a name.
-
-constexpr std::string_view name_of(Transport value) {
-    switch (value) {
-        case Transport::blocking: return "functional";
-        case Transport::non_blocking: return "timed";
-    }
-    return {};
-}
+// The enumerators' names in job files. One switch per enumeration, so that the compiler refuses an enumerator without a
+// name.
 
 constexpr std::string_view name_of(TriangleOrder value) {
     switch (value) {

@@ -63,7 +63,8 @@ void declare_memory_keys(const Keys& key, const std::string& leaf, const std::st
         name + ": largest number of outstanding fills of its cache, and of requests that wait for them");
 }
 
-/// Declares the members of Timing as keys of a job file and as parameters of CCI, with one call for each:
+/// Declares the members of Timing as keys of a job file, or as parameters of a configuration of another kind, with one
+/// call for each:
 ///   key.add_number(leaf, member, unit, range, description)
 ///   key.add_choice<Enum>(leaf, member, description)
 /// member(timing) is a reference to the member.

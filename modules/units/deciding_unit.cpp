@@ -14,6 +14,8 @@ DecidingUnit::DecidingUnit(const sc_core::sc_module_name& name, const UnitContex
     to_lighting.clocked_by(context, *this);
 }
 
+DecidingUnit::~DecidingUnit() = default;
+
 void DecidingUnit::decide_edges(datapath::TrianglePass& pass) {
     ++counts_.passes;
     unsigned asked = 0;

@@ -32,6 +32,8 @@ class DecidingUnit : public Unit {
         std::uint64_t culled = 0;
     };
 
+    ~DecidingUnit() override;
+
     const Counts& counts() const { return counts_; }
     /// True if no triangle waits for its parts.
     virtual bool joined() const = 0;

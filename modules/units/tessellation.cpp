@@ -7,6 +7,11 @@
 
 namespace tessera {
 
+TessellatingUnit::TessellatingUnit(const sc_core::sc_module_name& name, const UnitContext& context)
+    : Unit(name, context.clock), registers_(context.registers), timing_(context.timing().tessellation) {}
+
+TessellatingUnit::~TessellatingUnit() = default;
+
 Tessellation::Tessellation(const sc_core::sc_module_name& name, const UnitContext& context)
     : TessellatingUnit(name, context), latency_(clock_.period() * timing_.latency) {
     from_pass_or_tessellate.register_b_transport<&Tessellation::b_transport>(*this);

@@ -17,6 +17,8 @@ class TessellatingUnit : public Unit {
     /// In the family design, every triangle that is split and the vertices inserted on its edges: for the scoreboard.
     tlm::tlm_analysis_port<datapath::TrianglePass> inserted{"inserted"};
 
+    ~TessellatingUnit() override;
+
     /// Triangles split into 2, 3 or 4 children, by number of children; index 1: passed on unchanged.
     const std::array<std::uint64_t, 5>& made_into() const { return made_into_; }
     std::uint64_t children() const { return made_into_[1] + 2 * made_into_[2] + 3 * made_into_[3] + 4 * made_into_[4]; }
@@ -24,8 +26,7 @@ class TessellatingUnit : public Unit {
     const datapath::Saturations& saturations() const { return saturations_; }
 
   protected:
-    TessellatingUnit(const sc_core::sc_module_name& name, const UnitContext& context)
-        : Unit(name, context.clock), registers_(context.registers), timing_(context.timing().tessellation) {}
+    TessellatingUnit(const sc_core::sc_module_name& name, const UnitContext& context);
 
     const datapath::Registers& registers_;
     UnitTiming timing_;

@@ -1,6 +1,6 @@
 #include "testbench/output/picture/ray_scene.h"
 
-#include <embree3/rtcore.h>
+#include TESSERA_EMBREE_HEADER
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -52,12 +52,30 @@ void for_each_packet(std::size_t rays, const Trace& trace) {
     }
 }
 
-RTCIntersectContext coherent_context() {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    return context;
-}
+// How a packet's rays are traced: they are coherent.
+#if RTC_VERSION_MAJOR == 3
+struct Tracing : RTCIntersectContext {
+    Tracing() {
+        rtcInitIntersectContext(this);
+        flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    }
+};
+using Intersecting = Tracing;
+using Occluding = Tracing;
+#else
+struct Intersecting : RTCIntersectArguments {
+    Intersecting() {
+        rtcInitIntersectArguments(this);
+        flags = RTC_RAY_QUERY_FLAG_COHERENT;
+    }
+};
+struct Occluding : RTCOccludedArguments {
+    Occluding() {
+        rtcInitOccludedArguments(this);
+        flags = RTC_RAY_QUERY_FLAG_COHERENT;
+    }
+};
+#endif
 
 }  // namespace
 
@@ -94,14 +112,14 @@ RayScene::RayScene(const RenderMesh& mesh) {
 
 void RayScene::first_hits(const std::vector<Ray>& rays, std::vector<std::uint32_t>& triangles) const {
     triangles.resize(rays.size());
-    RTCIntersectContext context = coherent_context();
+    Intersecting how;
     for_each_packet(rays.size(), [&](std::size_t first, std::size_t count, const int* valid) {
         RTCRayHit8 hits;
         for (std::size_t lane = 0; lane < count; ++lane) {
             put(rays[first + lane], lane, hits.ray);
             hits.hit.primID[lane] = hits.hit.geomID[lane] = hits.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
         }
-        rtcIntersect8(valid, scene_.get(), &context, &hits);
+        rtcIntersect8(valid, scene_.get(), &how, &hits);
         for (std::size_t lane = 0; lane < count; ++lane)
             triangles[first + lane] =
                 hits.hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID ? nothing : hits.hit.primID[lane];
@@ -110,7 +128,7 @@ void RayScene::first_hits(const std::vector<Ray>& rays, std::vector<std::uint32_
 
 void RayScene::occlusions(const std::vector<glm::vec3>& origins, const glm::dvec3& direction,
                           std::vector<std::uint8_t>& occluded) const {
-    RTCIntersectContext context = coherent_context();
+    Occluding how;
     RTCRay8 rays{};
     for (std::size_t lane = 0; lane < packet; ++lane)
         put({{}, direction}, lane, rays);
@@ -122,7 +140,7 @@ void RayScene::occlusions(const std::vector<glm::vec3>& origins, const glm::dvec
             rays.org_z[lane] = origin.z;
             rays.tfar[lane] = std::numeric_limits<float>::infinity();
         }
-        rtcOccluded8(valid, scene_.get(), &context, &rays);
+        rtcOccluded8(valid, scene_.get(), &how, &rays);
         for (std::size_t lane = 0; lane < count; ++lane)
             occluded.push_back(rays.tfar[lane] < 0);
     });

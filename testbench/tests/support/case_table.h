@@ -20,10 +20,15 @@ class CaseTable {
     CaseTable(const std::string& prefix, const std::vector<Row>& rows, std::common_type_t<void (*)(const Row&)> run,
               const char* file = __builtin_FILE(), std::size_t line = __builtin_LINE()) {
         for (const Row& row : rows)
-            Catch::AutoReg(new Case([=] { run(row); }), {file, line}, "", {prefix + row.name});
+            Catch::AutoReg(Invoker(new Case([=] { run(row); })), {file, line}, "", {prefix + row.name});
     }
 
   private:
+#if CATCH_VERSION_MAJOR == 2
+    using Invoker = Catch::ITestInvoker*;
+#else
+    using Invoker = Catch::Detail::unique_ptr<Catch::ITestInvoker>;
+#endif
     struct Case : Catch::ITestInvoker {
         explicit Case(std::function<void()> its_run) : run(std::move(its_run)) {}
         void invoke() const override { run(); }

@@ -8,7 +8,7 @@
 #include "testbench/tests/input/mesh/mesh_checks.h"
 
 using namespace tessera;
-using Catch::Matchers::Contains;
+using Catch::Contains;
 
 namespace {
 

@@ -11,7 +11,7 @@
 #include "testbench/tests/support/shared_data.h"
 
 using namespace tessera;
-using Catch::Matchers::Contains;
+using Catch::Contains;
 namespace fs = std::filesystem;
 
 namespace {

@@ -14,8 +14,8 @@
 #include "testbench/tests/input/mesh/mesh_checks.h"
 
 using namespace tessera;
-using Catch::Matchers::Contains;
-using Catch::Matchers::StartsWith;
+using Catch::Contains;
+using Catch::StartsWith;
 
 namespace {
 

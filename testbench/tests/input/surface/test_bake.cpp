@@ -7,7 +7,7 @@
 #include "testbench/input/surface/bake.h"
 
 using namespace tessera;
-using Catch::Matchers::Contains;
+using Catch::Contains;
 
 namespace {
 
