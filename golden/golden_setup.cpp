@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <limits>
 
 namespace tessera::golden {
 namespace {
@@ -133,6 +135,47 @@ glm::dvec3 light_as_seen(const Scene& scene) {
 
 double code_of(double value, double low, double high, double highest_code) {
     return high > low ? std::clamp((value - low) / (high - low), 0.0, 1.0) * highest_code : 0;
+}
+
+namespace {
+
+/// Whether `given`, rounded to the source's precision, is `value`.
+bool is_nearest(double given, double value, int significant_bits) {
+    const bool half = significant_bits < 24;
+    if (std::isinf(value))
+        return std::signbit(given) == std::signbit(value) && std::abs(given) >= (half ? 65520 : 0x1.ffffffp127);
+    const int lowest_exponent = half ? -14 : -126;
+    const int exponent = value == 0 ? lowest_exponent : std::max(std::ilogb(value), lowest_exponent);
+    return std::abs(value - given) <= std::ldexp(1.0, exponent - significant_bits);
+}
+
+}  // namespace
+
+std::vector<float> heights_of(std::vector<float> values, const MapSource& source) {
+    const auto missing = [&](double value) {
+        return std::any_of(source.no_data.begin(), source.no_data.end(), [&](double given) {
+            return is_nearest(given / source.units, value, source.significant_bits) ||
+                   (std::abs(given) >= 1e30 && std::abs(value / given - 1) <= 0.01);
+        });
+    };
+    float low = std::numeric_limits<float>::infinity(), high = -low;
+    std::vector<std::size_t> holes, peaks;
+    for (std::size_t k = 0; k < values.size(); ++k) {
+        const float value = values[k];
+        if (missing(static_cast<double>(value)) || std::isnan(value) || (std::isinf(value) && value < 0)) {
+            holes.push_back(k);
+        } else if (std::isinf(value)) {
+            peaks.push_back(k);
+        } else {
+            low = std::min(low, value);
+            high = std::max(high, value);
+        }
+    }
+    for (const std::size_t k : holes)
+        values[k] = low;
+    for (const std::size_t k : peaks)
+        values[k] = high;
+    return values;
 }
 
 Vertex place_vertex(const Vertex& in_model_units, const glm::dvec2& uv, const Placement& placement, const Map& map,

@@ -1,5 +1,6 @@
 #pragma once
 #include <glm/glm.hpp>
+#include <vector>
 
 #include "golden/golden_map.h"
 #include "golden/golden_model.h"
@@ -80,6 +81,16 @@ glm::dvec3 light_as_seen(const Scene& scene);
 
 /// A map value's code before rounding: 0 at `low`, highest_code at `high`, clamped to that range.
 double code_of(double value, double low, double high, double highest_code);
+
+/// What a source says about a map's values.
+struct MapSource {
+    std::vector<double> no_data;  ///< values that mark missing data, in source units
+    double units = 1;             ///< source units per unit of value
+    int significant_bits = 24;    ///< of a value
+};
+
+/// The heights of a map (2): values that are none, as NaN, infinite or missing, are replaced.
+std::vector<float> heights_of(std::vector<float> values, const MapSource& source);
 
 /// A base vertex in world units and texels. `uv` spans the map once from 0 to 1; on a clamped axis it is clamped to the
 /// map, unless `beyond_map`.

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "modules/timing/design_choices.h"
 #include "modules/timing/timing.h"
@@ -69,6 +70,7 @@ struct Job {
         std::int64_t seed = 1;         // noise map
         std::string text = "tessera";  // text map
         MapRange range;
+        std::vector<double> no_data;  // values that mark missing data, in the map's own units
         MapHeights heights = MapHeights::given;
         Addressing address_u = Addressing::clamp;
         Addressing address_v = Addressing::clamp;

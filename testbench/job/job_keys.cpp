@@ -83,6 +83,9 @@ class TableWriter {
     void add(const char* leaf, std::string Group::*member, KeyKind kind, const char* description) const {
         add_plain(leaf, member, kind, "-", {}, description);
     }
+    void add(const char* leaf, std::vector<double> Group::*member, const char* unit, const char* description) const {
+        add_plain(leaf, member, KeyKind::numbers, unit, {}, description);
+    }
     void add(const char* leaf, MapRange Group::*member, const char* unit, KeyRange range,
              const char* description) const {
         Key& key = push(leaf, KeyKind::span, unit, description);
@@ -227,6 +230,7 @@ std::vector<KeyTable> declare_keys() {
         key.add("seed", &Map::seed, "-", between(0, 4294967295.0), "Seed of the noise map");
         key.add("text", &Map::text, KeyKind::text, "Text of the text map");
         key.add("range", &Map::range, "the map's own units", coordinate_range, "The range of map values that displacement.scale spans: full, all values that the source can represent (PGM: 0 to its maximum value; PNG: 0 to 255 or 65535; EXR and built-in maps: 0 to 1); data, from the lowest to the highest value that occurs; or [low, high]. Values outside the range extrapolate linearly. With data or [low, high] the displacement codes, and the full scale of tests.summed_height_threshold, span the values that occur");
+        key.add("no_data", &Map::no_data, "the map's own units", "Values that mark missing data, such as -9999: their texels, like those that are NaN, get the lowest of the other values, and are counted. A value matches if it is the nearest of the file's type; one beyond 1e30, positive or negative, also if it differs by at most 1 %");
         key.add("heights", &Map::heights, "Contents of the displacement map: the map's heights, or fitted heights. To fit them the host finds the mesh that the job's thresholds give, and chooses the heights of its vertices that minimise its squared error at the texel centres. The tables of the tests remain those of the map, and errors are measured against the map");
         key.add("address_u", &Map::address_u, "Addressing beyond the map's left and right border; repeat closes a cylinder's seam");
         key.add("address_v", &Map::address_v, "Addressing beyond the map's lower and upper border");

@@ -15,6 +15,7 @@ namespace tessera {
 namespace {
 
 constexpr std::size_t longest_text = 4096;  // bytes; the limit of Linux for paths
+constexpr std::size_t most_numbers = 16;    // each is compared with every texel
 
 std::string range_numbers(const Key& key) {
     const std::string range = fmt::format("{} .. {}", key.range.low, key.range.high);
@@ -90,6 +91,14 @@ struct FaultOf {
                 return fault;
         return "";
     }
+    std::string operator()(const std::vector<double>& values) const {
+        if (key.kind != KeyKind::numbers)
+            return wrong_kind();
+        if (values.size() > most_numbers)
+            return fmt::format("has {} numbers; the limit is {}", values.size(), most_numbers);
+        const bool finite = std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
+        return finite ? "" : "has a number that is not finite";
+    }
     std::string operator()(const std::string& value) const {
         const bool textual = key.kind == KeyKind::choice || key.kind == KeyKind::span || key.kind == KeyKind::text ||
                              key.kind == KeyKind::file || key.kind == KeyKind::folder;
@@ -110,6 +119,7 @@ std::string range_text(const Key& key) {
         case KeyKind::number: return auto_text(key) + range_numbers(key);
         case KeyKind::vector: return auto_text(key) + "[x, y, z], each " + range_numbers(key);
         case KeyKind::span: return joined(key.choices) + " or [low, high], each " + range_numbers(key);
+        case KeyKind::numbers: return fmt::format("a number, or [up to {} numbers]", most_numbers);
         case KeyKind::choice: return joined(key.choices);
         case KeyKind::text: return "text";
         case KeyKind::file: return "path from the job's folder, or data:path";
@@ -128,6 +138,7 @@ std::string wanted_text(const Key& key) {
         case KeyKind::span:
             return "one of " + joined(key.choices) + ", or two numbers, " +
                    WithUnit{key}("[low, high], each " + range_numbers(key));
+        case KeyKind::numbers: return WithUnit{key}(range_text(key));
         case KeyKind::choice: return "one of " + joined(key.choices);
         case KeyKind::text:
         case KeyKind::file:

@@ -82,6 +82,21 @@ std::optional<std::array<double, Size>> to_numbers(const toml::node& node) {
     return vector;
 }
 
+/// A number alone is a list of one.
+std::optional<std::vector<double>> to_list(const toml::node& node) {
+    if (const std::optional<double> number = to_number(node))
+        return std::vector<double>{*number};
+    const toml::array* array = node.as_array();
+    std::vector<double> list;
+    for (std::size_t i = 0; array != nullptr && i < array->size(); ++i) {
+        const std::optional<double> number = to_number((*array)[i]);
+        if (!number)
+            return {};
+        list.push_back(*number);
+    }
+    return array == nullptr ? std::nullopt : std::optional(list);
+}
+
 template <typename T>
 std::optional<JobValue> optional_value(const std::optional<T>& value) {
     return value ? std::optional<JobValue>(JobValue(*value)) : std::nullopt;
@@ -98,6 +113,7 @@ std::optional<JobValue> to_value(const toml::node& node, const Key& key) {
         case KeyKind::number: return optional_value(to_number(node));
         case KeyKind::vector: return optional_value(to_numbers<3>(node));
         case KeyKind::span: return optional_value(to_numbers<2>(node));
+        case KeyKind::numbers: return optional_value(to_list(node));
         case KeyKind::choice:
         case KeyKind::text:
         case KeyKind::file:
@@ -212,7 +228,8 @@ bool is_bare_word(const Key& key, std::string_view value) {
         case KeyKind::flag:
         case KeyKind::integer:
         case KeyKind::number:
-        case KeyKind::vector: break;
+        case KeyKind::vector:
+        case KeyKind::numbers: break;
     }
     return key.range.or_auto && value == auto_word;
 }

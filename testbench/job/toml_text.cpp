@@ -57,12 +57,12 @@ struct ToToml {
     std::string operator()(bool value) const { return value ? "true" : "false"; }
     std::string operator()(std::int64_t value) const { return std::to_string(value); }
     std::string operator()(double value) const { return toml_number(value); }
-    template <std::size_t N>
-    std::string operator()(const std::array<double, N>& values) const {
+    template <typename Numbers>
+    std::string operator()(const Numbers& values) const {
         std::string text;
         for (const double value : values)
-            text += (text.empty() ? "[" : ", ") + toml_number(value);
-        return text + "]";
+            text += (text.empty() ? "" : ", ") + toml_number(value);
+        return '[' + text + ']';
     }
     std::string operator()(const std::string& value) const { return toml_string(value); }
 };

@@ -2,6 +2,7 @@
 
 #include "testbench/input/map/built_in_maps.h"
 #include "testbench/input/map/map_range.h"
+#include "testbench/input/map/no_data.h"
 #include "testbench/input/map/read_height_map.h"
 #include "testbench/input/mesh/built_in.h"
 #include "testbench/input/mesh/make_base_mesh.h"
@@ -33,7 +34,7 @@ HeightMap make_map(const Job& job) {
         case MapSource::ramp: return ramp_map(map.width, map.height);
         case MapSource::file: break;
     }
-    return read_height_map(map.path, map.channel);
+    return read_height_map(map.path, map.channel, map.no_data);
 }
 
 }  // namespace
@@ -41,6 +42,10 @@ HeightMap make_map(const Job& job) {
 HeightMap load_map(const Job& job) {
     check_map_fingerprint(job);
     HeightMap map = make_map(job);
+    if (job.map.source == MapSource::file)
+        suspect_no_data(map, job.map.no_data);
+    if (!map.no_data_hint.empty())
+        map.repairs.push_back(map.no_data_hint + '.');
     span_values(map, job.map.range);
     return map;
 }

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "testbench/machine/bare_recursion.h"
@@ -53,11 +54,13 @@ SceneSettings scene_settings(const Job& job) {
     return settings;
 }
 
-/// Fits heights to the mesh of the unfitted map. A mesh beyond the job's limit is skipped, since its run stops there.
+/// Fits heights to the mesh of the unfitted map. A mesh beyond the job's limit is skipped, since its run stops there,
+/// and so is a flat one.
 void fit_heights_to_own_mesh(std::int64_t most_triangles, MachineSetup& setup) {
     EmittedMesh mesh;
     const std::uint64_t most_edges = 6 * static_cast<std::uint64_t>(most_triangles);  // 3 a pass, at most 2 passes each
-    if (BareRecursion(setup).run(mesh, most_edges) >= most_edges)
+    const double height = std::abs(setup.height_per_code);
+    if (height == 0 || BareRecursion(setup).run(mesh, most_edges) >= most_edges)
         return;
     std::vector<TextureTriangle> triangles;
     triangles.reserve(mesh.triangles.size());
@@ -65,7 +68,13 @@ void fit_heights_to_own_mesh(std::int64_t most_triangles, MachineSetup& setup) {
         const auto& corners = triangle.corners;
         triangles.push_back({corners[0].texture, corners[1].texture, corners[2].texture});
     }
-    setup.fitted_heights = fit_heights(setup.map, triangles, setup.registers.formats).codes;
+    setup.fitted_heights = fit_heights(setup.map, triangles, setup.registers.formats,
+                                       {setup.texel_size[0] / height, setup.texel_size[1] / height})
+                               .codes;
+    if (setup.fitted_heights == setup.map.codes)
+        setup.remarks.emplace_back(
+            "map.heights = \"fitted\" has no effect: no other heights reduce this mesh's error without raising its "
+            "largest distance from the surface; the map's own are used");
 }
 
 /// A sentence for the report if the map's values are so few of those that displacement.scale spans that the surface is

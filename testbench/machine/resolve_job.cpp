@@ -12,7 +12,9 @@
 #include "testbench/job/job_keys.h"
 #include "testbench/job/toml_text.h"
 #include "testbench/setup/check_settings.h"
+#include "testbench/setup/formats.h"
 #include "testbench/setup/map_displacement.h"
+#include "testbench/setup/model_scale.h"
 #include "testbench/setup/unit_vector.h"
 
 namespace tessera {
@@ -141,6 +143,7 @@ class Resolver {
 
     ResolvedJob result() {
         find_scale();
+        check_displacement();
         find_camera();
         check();
         return std::move(result_);
@@ -167,15 +170,28 @@ class Resolver {
                                                 reach > span ? ", reduced because values exceed map.range" : ""));
     }
 
-    /// Lowest and highest displacement of the first and of the last frame; those in between stay within.
-    std::vector<double> heights_of_all_frames() const {
+    /// Of the first and of the last frame.
+    std::array<Job::Displacement, 2> extreme_frames() const {
         const Job& job = result_.job;
         Job::Displacement first = job.displacement;
         if (job.frames.count > 1)
             first.scale = job.frames.first_scale;
+        return {first, job.displacement};
+    }
+
+    /// A displacement that is too large for the formats would put the camera out of its range: it is refused first.
+    void check_displacement() const {
+        const Job& job = result_.job;
+        const datapath::Format position = make_formats(job.formats, job.hardware.displacement_filter).position;
+        for (const Job::Displacement& frame : extreme_frames())
+            fit_model(mesh_, frame, map_, position, job.map.source == MapSource::file ? job.map.file : "map");
+    }
+
+    /// Lowest and highest displacement of the first and of the last frame; those in between stay within.
+    std::vector<double> heights_of_all_frames() const {
         std::vector<double> heights;
         for (const double value : values_of(map_))
-            for (const Job::Displacement& frame : {first, job.displacement})
+            for (const Job::Displacement& frame : extreme_frames())
                 heights.push_back(MapDisplacement::from(frame, map_).of(value));
         return heights;
     }

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,21 @@ struct HeightMap {
     /// Units of the source per unit of value: PGM's maximum value, 255 or 65535 for PNG, 1 for others. An elevation of
     /// 1533 m in a PGM of maximum value 2478 has the value 0.6186, and 1533 source units.
     double source_units = 1;
+
+    /// Significant bits of the source's values.
+    static constexpr int half_bits = 11, float_bits = 24;
+    int significant_bits = float_bits;
+
+    /// Texels whose value in the source was no height, in ascending order, and that value: NaN, infinite, or one of
+    /// map.no_data. `values` has what they were set to (input/map/no_data.h).
+    struct Replaced {
+        std::uint32_t texel;
+        float was;
+    };
+    std::vector<Replaced> replaced;
+
+    /// Which values look like missing data, and what to do; empty: none. No full stop.
+    std::string no_data_hint;
 
     /// Repairs and anomalies found while reading, one sentence each without the file's name, for the report ("3 NaN
     /// texels set to ...").

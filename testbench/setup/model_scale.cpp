@@ -18,8 +18,39 @@ DisplacementRange displacement_range(const DisplacementSettings& settings, const
     return {displacement.of(map.range_low), displacement.scale * (map.range_high - map.range_low)};
 }
 
-ModelScale fit_model(const BaseMesh& mesh, const DisplacementRange& displacement, const Format& position,
-                     const std::string& map) {
+namespace {
+
+/// The cause of a displacement that is too large by `factor`, and what to do.
+std::string cause_of(const DisplacementSettings& settings, const HeightMap& map, const Format& position,
+                     double factor) {
+    const auto [lowest, highest] = std::minmax_element(map.values.begin(), map.values.end());
+    const double low = static_cast<double>(*lowest), high = static_cast<double>(*highest);
+    const auto source = [&](double value) { return value * map.source_units; };
+    const std::string values =
+        fmt::format("The map's values are {:.6g} to {:.6g}, of which displacement.scale = {:.6g} spans {:.6g} to {:.6g}",
+                    source(low), source(high), settings.scale, source(map.span_low), source(map.span_high));
+    if (!map.no_data_hint.empty())
+        return fmt::format("{}. {}", values, map.no_data_hint);
+    const double span = map.span_high - map.span_low;
+    const double beyond = std::max(map.span_low - low, high - map.span_high);
+    if (beyond > 8 * span && high > low)
+        return fmt::format("{}: set map.range = \"data\"", values);
+    const double halvings = std::isfinite(factor) ? std::ceil(std::log2(factor)) : 0;
+    const int bits = position.bits + static_cast<int>(std::min(halvings, 64.0));
+    return fmt::format("{}: check the map's values{}{}", values,
+                       halvings > 0 ? fmt::format(", divide displacement.scale and displacement.bias by {}",
+                                                  std::exp2(halvings + 1))
+                                    : "",
+                       halvings == 0 || bits > datapath::FormatLimits::position_bits.most
+                           ? ""
+                           : fmt::format(", or set formats.position_bits = {}", bits));
+}
+
+}  // namespace
+
+ModelScale fit_model(const BaseMesh& mesh, const DisplacementSettings& settings, const HeightMap& map,
+                     const Format& position, const std::string& map_name) {
+    const DisplacementRange displacement = displacement_range(settings, map);
     const auto [low, high] = bounds_of(mesh.vertices);
     ModelScale result;
     result.centre = (low + high) / 2.0;
@@ -29,23 +60,17 @@ ModelScale fit_model(const BaseMesh& mesh, const DisplacementRange& displacement
     // S and bias are registers of the same format; S is up to twice the range (bits = 1, see make_displacement)
     const double registers = std::max(2 * std::abs(displacement.range), std::abs(displacement.bias)) / 2;
     const double limit = std::ldexp(1.0, position.bits - position.fraction - 2);
-    if (reach > 0)
+    if (reach > 0 && std::isfinite(reach))
         result.scale = std::ldexp(1.0, static_cast<int>(std::floor(std::log2(limit / std::max(reach, registers)))));
     // with fewer steps across the whole mesh, the surface would be mostly rounding error
     constexpr double fewest_steps = 16;
     const double steps = std::ldexp(std::max({half.x, half.y, half.z}) * result.scale, position.fraction);
-    if (steps < fewest_steps) {
-        const int halvings = static_cast<int>(std::ceil(std::log2(fewest_steps / steps)));
-        const int bits = position.bits + halvings;
+    if (!(steps >= fewest_steps) || !std::isfinite(reach)) {
         throw InputError(fmt::format(
             "{}: the displacement, {:.3g} to {:.3g} model units, is so large compared with the mesh (half its size "
-            "is {:.3g}) that the mesh spans {:.3g} steps of its position format (at least {} are needed): "
-            "check the map's values, divide displacement.scale and displacement.bias by {}{}",
-            map, displacement.bias, displacement.bias + displacement.range, std::max({half.x, half.y, half.z}), steps,
-            fewest_steps, std::ldexp(1.0, halvings + 1),
-            bits > datapath::FormatLimits::position_bits.most
-                ? ""
-                : fmt::format(", or set formats.position_bits = {}", bits)));
+            "is {:.3g}) that the mesh spans {:.3g} steps of its position format (at least {} are needed). {}",
+            map_name, displacement.bias, displacement.bias + displacement.range, std::max({half.x, half.y, half.z}),
+            steps, fewest_steps, cause_of(settings, map, position, fewest_steps / steps)));
     }
     return result;
 }

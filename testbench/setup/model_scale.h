@@ -29,10 +29,10 @@ struct DisplacementRange {
 DisplacementRange displacement_range(const DisplacementSettings& settings, const HeightMap& map);
 
 /// Chooses centre and scale so that the displaced model fits half of the position's range: nothing saturates, and the
-/// eye of a usual camera has room. `map`: the map's name in messages. Throws InputError if the displacement is so large
-/// that the mesh spans too few steps of the format.
-ModelScale fit_model(const BaseMesh& mesh, const DisplacementRange& displacement, const datapath::Format& position,
-                     const std::string& map);
+/// eye of a usual camera has room. Throws InputError, which names the values that displace it and begins with the map's
+/// name, if the displacement is so large that the mesh spans too few steps of the format.
+ModelScale fit_model(const BaseMesh& mesh, const DisplacementSettings& settings, const HeightMap& map,
+                     const datapath::Format& position, const std::string& map_name);
 
 /// The registers S and bias of P' = P + (S * d + bias) * N, in the position's format. highest_code: of the map.
 datapath::DisplacementParameters make_displacement(const DisplacementRange& displacement, const ModelScale& model_scale,

@@ -127,7 +127,7 @@ PreparedScene prepare_model(const SceneSettings& settings, const BaseMesh& mesh,
     registers.map = scene.map.geometry;
 
     const DisplacementRange displacement = displacement_range(settings.displacement, map);
-    const ModelScale model_scale = fit_model(mesh, displacement, formats.position, map_name);
+    const ModelScale model_scale = fit_model(mesh, settings.displacement, map, formats.position, map_name);
     scene.scale = model_scale.scale;
     scene.centre = {model_scale.centre.x, model_scale.centre.y, model_scale.centre.z};
     registers.displacement =

@@ -16,19 +16,39 @@ glm::dvec3 vector(const std::array<double, 3>& a) {
     return {a[0], a[1], a[2]};
 }
 
+/// Golden's own heights; empty if all of the source's values are heights.
+std::vector<float> own_heights(const Job& job, const HeightMap& map) {
+    if (map.replaced.empty() && job.map.no_data.empty())
+        return {};
+    std::vector<float> source = map.values;
+    for (const HeightMap::Replaced& replaced : map.replaced)
+        source[replaced.texel] = replaced.was;
+    return golden::heights_of(std::move(source), {job.map.no_data, map.source_units, map.significant_bits});
+}
+
+std::array<double, 2> range_of(const std::vector<float>& heights) {
+    const auto [low, high] = std::minmax_element(heights.begin(), heights.end());
+    return {*low, *high};
+}
+
+/// The values of the lowest and the highest code.
+std::array<double, 2> code_range_of(const Job& job, const HeightMap& map, const std::vector<float>& heights) {
+    const bool whole_format = map.range_low == 0 && map.range_high == 1 && job.map.range.kind == MapRange::Kind::full;
+    return whole_format ? std::array<double, 2>{0, 1} : range_of(heights);
+}
+
 /// The range of map values that displacement.scale spans, from map.range.
-std::array<double, 2> span_of(const Job& job, const HeightMap& map) {
+std::array<double, 2> span_of(const Job& job, const HeightMap& map, const std::vector<float>& heights) {
     if (job.map.range.kind == MapRange::Kind::full)
         return {0, 1};
     if (job.map.range.kind == MapRange::Kind::given)
         return {job.map.range.low / map.source_units, job.map.range.high / map.source_units};
-    const auto [low, high] = std::minmax_element(map.values.begin(), map.values.end());
-    return {*low, *high};
+    return range_of(heights);
 }
 
 /// The displacement of a map value, in model units.
-double displacement_of(double value, const Job& job, const HeightMap& map) {
-    const auto [low, high] = span_of(job, map);
+double displacement_of(double value, const Job& job, const std::array<double, 2>& span) {
+    const auto [low, high] = span;
     const double part = high > low ? (value - low) / (high - low) : 0;
     return job.displacement.bias + job.displacement.scale * part;
 }
@@ -59,20 +79,20 @@ double texel_parts(const Job::Formats& formats, golden::Filter filter) {
     return filter == golden::Filter::bilinear && formats.texture_fraction > 0 ? 2 : 1;
 }
 
-double code_at(std::size_t texel, const HeightMap& map, const golden::Scene& scene) {
-    return golden::code_of(map.values[texel], map.range_low, map.range_high, scene.highest_code);
-}
-
-double largest_rounding(const HeightMap& map, const golden::Scene& scene) {
+/// Largest error of a value's code, in codes.
+double largest_rounding(const std::vector<float>& heights, const std::array<double, 2>& code_range,
+                        double highest_code) {
     double largest = 0;
-    for (std::size_t texel = 0; texel < map.values.size(); ++texel) {
-        const double code = code_at(texel, map, scene);
+    for (const float height : heights) {
+        const double code = golden::code_of(height, code_range[0], code_range[1], highest_code);
         largest = std::max(largest, std::abs(std::floor(code + 0.5) - code));
     }
     return largest;
 }
 
-golden::Scene make_scene(const Job& job, const glm::dvec2& size, const HeightMap& map, const ModelScale& model_scale) {
+golden::Scene make_scene(const Job& job, const glm::dvec2& size, const HeightMap& map,
+                         const std::vector<float>& heights, const std::array<double, 2>& code_range,
+                         const ModelScale& model_scale) {
     golden::Scene scene;
     const Job::Camera& camera = job.camera;
     scene.camera = {vector(camera.eye),   vector(camera.target), vector(camera.up),
@@ -80,8 +100,9 @@ golden::Scene make_scene(const Job& job, const glm::dvec2& size, const HeightMap
     scene.placement = {model_scale.centre, model_scale.scale};
     const glm::dvec2 texel = texel_size(size, map, model_scale.scale);
     scene.texel_area = texel.x * texel.y;
-    scene.lowest = displacement_of(map.range_low, job, map);
-    scene.highest = displacement_of(map.range_high, job, map);
+    const std::array<double, 2> span = span_of(job, map, heights);
+    scene.lowest = displacement_of(code_range[0], job, span);
+    scene.highest = displacement_of(code_range[1], job, span);
     scene.highest_code = std::ldexp(1.0, static_cast<int>(job.formats.displacement_bits)) - 1;
 
     const Job::Tests& tests = job.tests;
@@ -96,7 +117,7 @@ golden::Scene make_scene(const Job& job, const glm::dvec2& size, const HeightMap
         scene.rank_view = golden_rank_view(job.tests.rank_view);
         scene.rank_bits = static_cast<int>(job.formats.rank_bits);
         scene.bound_bits = static_cast<int>(job.formats.bound_bits);
-        scene.code_rounding = scene.bound_bits > 0 ? largest_rounding(map, scene) : 0;
+        scene.code_rounding = scene.bound_bits > 0 ? largest_rounding(heights, code_range, scene.highest_code) : 0;
     }
     scene.view_threshold = tests.view_threshold;
     scene.generation_limit = static_cast<int>(tests.generation_limit);
@@ -110,12 +131,13 @@ golden::Scene make_scene(const Job& job, const glm::dvec2& size, const HeightMap
     return scene;
 }
 
-golden::Map make_map(const Job& job, const HeightMap& height_map, const glm::dvec2& size, const golden::Scene& scene,
+golden::Map make_map(const Job& job, const HeightMap& height_map, const std::vector<float>& heights,
+                     const std::array<double, 2>& code_range, const glm::dvec2& size, const golden::Scene& scene,
                      double scale_per_code) {
     std::vector<double> codes;
-    codes.reserve(height_map.values.size());
-    for (std::size_t texel = 0; texel < height_map.values.size(); ++texel)
-        codes.push_back(std::floor(code_at(texel, height_map, scene) + 0.5));
+    codes.reserve(heights.size());
+    for (const float height : heights)
+        codes.push_back(std::floor(golden::code_of(height, code_range[0], code_range[1], scene.highest_code) + 0.5));
     golden::Map map(height_map.width, height_map.height, golden_mode(job.map.address_u), golden_mode(job.map.address_v),
                     codes);
     map.derive_normals(scale_per_code, texel_size(size, height_map, scene.placement.scale));
@@ -135,9 +157,11 @@ GoldenJob::GoldenJob(const Job& job, const BaseMesh& mesh, const HeightMap& heig
       mesh_(mesh),
       height_map_(height_map),
       frames_(frames_of(mesh)),
-      scene_(make_scene(job_, frames_.size, height_map, model_scale)),
+      own_heights_(own_heights(job_, height_map)),
+      code_range_(code_range_of(job_, height_map, heights())),
+      scene_(make_scene(job_, frames_.size, height_map, heights(), code_range_, model_scale)),
       parameters_(golden::make_parameters(scene_)),
-      map_(make_map(job_, height_map, frames_.size, scene_, parameters_.scale)) {
+      map_(make_map(job_, height_map, heights(), code_range_, frames_.size, scene_, parameters_.scale)) {
     set_tables(map_, tables);
     if (job_.hardware.height_test == HeightTest::mipmap)
         map_.make_mipmap(job_.tests.mipmap_filter == MipmapFilter::maximum ? golden::MipmapFilter::maximum
@@ -162,7 +186,7 @@ glm::dvec2 GoldenJob::texel_size() const {
 }
 
 double GoldenJob::unrounded_code(std::size_t texel) const {
-    return code_at(texel, height_map_, scene_);
+    return golden::code_of(heights()[texel], code_range_[0], code_range_[1], scene_.highest_code);
 }
 
 }  // namespace tessera

@@ -1,6 +1,8 @@
 #pragma once
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "golden/golden_frames.h"
 #include "golden/golden_setup.h"
@@ -15,7 +17,8 @@ namespace tessera {
 /// host: the table in golden/ALGORITHM.md section 8. setup_check.h compares the host's set-up of the
 /// same job with this; golden's own run (end_to_end.h) starts from it.
 ///
-/// The map's codes are golden's own, of the job's width; `tessera widths` measures the effect of that width. Memory: 12
+/// The map's values are those of its file, in which golden itself replaces what is no height (NaN, map.no_data). Its
+/// codes are golden's own, of the job's width; `tessera widths` measures the effect of that width. Memory: 12
 /// bytes per texel.
 class GoldenJob {
   public:
@@ -46,10 +49,14 @@ class GoldenJob {
     double unrounded_code(std::size_t texel) const;
 
   private:
+    const std::vector<float>& heights() const { return own_heights_.empty() ? height_map_.values : own_heights_; }
+
     Job job_;
     const BaseMesh& mesh_;
     const HeightMap& height_map_;
     golden::BaseFrames frames_;
+    std::vector<float> own_heights_;    //  empty: all of the map's values are heights
+    std::array<double, 2> code_range_;  // values of the lowest and the highest code
     golden::Scene scene_;
     golden::Parameters parameters_;
     golden::Map map_;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <openexr.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <string_view>
 #include <tuple>
@@ -35,7 +36,13 @@ class ExrFile {
     void check_header();
     void check_chunks() const;
 
+    const PixelWindow& image() const { return image_; }
+    /// What the windows mean for the map; empty if they are the same.
+    std::string windows_remark() const;
+
   private:
+    void read_windows();
+
     [[noreturn]] void refuse(std::string_view why) const { throw InputError(fmt::format("{}: {}", name_, why)); }
 
     // Keeps the first message: later ones report where the library stopped, not why.
@@ -56,9 +63,19 @@ class ExrFile {
     std::string message_;
     exr_context_t file_ = nullptr;
     bool tiled_ = false;
-    int top_ = 0;
-    std::int64_t width_ = 0, height_ = 0, chunk_width_ = 0, chunk_height_ = 0;
+    PixelWindow data_, image_;
+    std::int64_t width_ = 0, height_ = 0;  // of the data
+    std::int64_t chunk_width_ = 0, chunk_height_ = 0;
 };
+
+std::string text_of(const PixelWindow& window) {
+    return fmt::format("{} x {} at ({}, {})", window.width(), window.height(), window.left, window.top);
+}
+
+PixelWindow common(const PixelWindow& a, const PixelWindow& b) {
+    return {std::max(a.left, b.left), std::max(a.top, b.top), std::min(a.right, b.right),
+            std::min(a.bottom, b.bottom)};
+}
 
 ExrFile::ExrFile(const std::filesystem::path& path, int flags) : name_(path.string()) {
     exr_context_initializer_t settings = EXR_DEFAULT_CONTEXT_INITIALIZER;
@@ -72,11 +89,9 @@ ExrFile::ExrFile(const std::filesystem::path& path, int flags) : name_(path.stri
 void ExrFile::check_header() {
     int parts = 0;
     exr_storage_t storage{};
-    exr_attr_box2i_t window{};
     const exr_attr_chlist_t* channels = nullptr;
     check(exr_get_count(file_, &parts));
     check(exr_get_storage(file_, 0, &storage));
-    check(exr_get_data_window(file_, 0, &window));
     check(exr_get_channels(file_, 0, &channels));
     if (parts != 1)
         refuse("the EXR file has several parts. Save the part with the heights as a separate file.");
@@ -85,10 +100,7 @@ void ExrFile::check_header() {
             "the EXR file holds deep data, several samples per pixel. Flatten it and save one scan-line or "
             "tiled image.");
     tiled_ = storage == EXR_STORAGE_TILED;
-    top_ = window.min.y;
-    width_ = std::int64_t{window.max.x} - window.min.x + 1;
-    height_ = std::int64_t{window.max.y} - window.min.y + 1;
-    check_map_sides(name_, width_, height_);
+    read_windows();
     if (tiled_) {
         std::uint32_t across = 0, down = 0;
         exr_tile_level_mode_t levels{};
@@ -115,12 +127,47 @@ void ExrFile::check_header() {
                             what, bytes, channels->num_channels, limit));
 }
 
+void ExrFile::read_windows() {
+    const auto window = [](const exr_attr_box2i_t& box) { return PixelWindow{box.min.x, box.min.y, box.max.x, box.max.y}; };
+    exr_attr_box2i_t box{};
+    check(exr_get_data_window(file_, 0, &box));
+    data_ = image_ = window(box);
+    width_ = data_.width();
+    height_ = data_.height();
+    if (exr_get_display_window(file_, 0, &box) == EXR_ERR_SUCCESS)
+        image_ = window(box);
+    message_.clear();  // without a display window
+    check_map_sides(name_, image_.width(), image_.height());
+    constexpr int overscan = 2;
+    if (width_ < 1 || height_ < 1 || width_ > overscan * largest_map_side || height_ > overscan * largest_map_side)
+        refuse(fmt::format("the EXR file's data window is {}; each side must be 1 to {}. Save it cropped to its display "
+                           "window, {}.",
+                           text_of(data_), overscan * largest_map_side, text_of(image_)));
+    const PixelWindow both = common(data_, image_);
+    if (both.width() < 1 || both.height() < 1)
+        refuse(fmt::format("the EXR file's data window, {}, lies outside its display window, {}, which is the image: it "
+                           "has no pixel. Save it with a display window around its pixels.",
+                           text_of(data_), text_of(image_)));
+}
+
+std::string ExrFile::windows_remark() const {
+    const PixelWindow both = common(data_, image_);
+    const std::int64_t stored = both.width() * both.height();
+    const std::int64_t empty = image_.width() * image_.height() - stored, cropped = width_ * height_ - stored;
+    if (empty == 0 && cropped == 0)
+        return {};
+    return fmt::format("The map is the EXR file's display window, {}; its data window is {}: {}{}{}.", text_of(image_),
+                       text_of(data_), empty > 0 ? fmt::format("{} texels without data are 0", empty) : "",
+                       empty > 0 && cropped > 0 ? ", " : "",
+                       cropped > 0 ? fmt::format("{} pixels outside were cropped", cropped) : "");
+}
+
 void ExrFile::check_chunks() const {
     exr_chunk_info_t chunk{};
     for (std::int64_t y = 0; y * chunk_height_ < height_; ++y)
         for (std::int64_t x = 0; x * chunk_width_ < width_; ++x) {
             check(tiled_ ? exr_read_tile_chunk_info(file_, 0, static_cast<int>(x), static_cast<int>(y), 0, 0, &chunk)
-                         : exr_read_scanline_chunk_info(file_, 0, top_ + static_cast<int>(y * chunk_height_), &chunk));
+                         : exr_read_scanline_chunk_info(file_, 0, data_.top + static_cast<int>(y * chunk_height_), &chunk));
             if (chunk.compression == EXR_COMPRESSION_NONE && chunk.packed_size != chunk.unpacked_size)
                 refuse(
                     fmt::format("a chunk of the EXR file holds {} bytes of pixels of {}. It is damaged: save or "
@@ -138,32 +185,34 @@ void ExrFile::check_chunks() const {
 
 }  // namespace
 
-std::vector<std::string> check_exr(const std::filesystem::path& path) {
-    const auto check = [&path](int flags) {
+ExrCheck check_exr(const std::filesystem::path& path) {
+    const auto check = [&path](int flags, const std::string& remark = {}) {
         ExrFile file(path, flags);
         file.check_header();
         file.check_chunks();
+        ExrCheck result{file.image(), {}};
+        for (const std::string& text : {remark, file.windows_remark()})
+            if (!text.empty())
+                result.remarks.push_back(text);
+        return result;
     };
     std::string problem;
     try {
-        check(EXR_CONTEXT_FLAG_STRICT_HEADER | EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION);
-        return {};
+        return check(EXR_CONTEXT_FLAG_STRICT_HEADER | EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION);
     } catch (const InputError& error) {
         problem = error.what();
     }
     const auto says = [&problem](const std::string& words) { return problem.find(words) != std::string::npos; };
-    if (says("recorded at file offset 0.")) {
-        check(EXR_CONTEXT_FLAG_STRICT_HEADER);  // also checks the chunks
-        return {
-            "The EXR file's offset table is incomplete (its writer did not finish); the pixels were all "
-            "found."};
-    }
+    if (says("recorded at file offset 0."))
+        return check(EXR_CONTEXT_FLAG_STRICT_HEADER,
+                     "The EXR file's offset table is incomplete (its writer did not finish); the pixels were all "
+                     "found.");
     for (const char* const name : {"displayWindow", "pixelAspectRatio", "screenWindowCenter", "screenWindowWidth"})
-        if (says(fmt::format("'{}' attribute not found", name))) {
-            check(EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION);
-            return {
-                fmt::format("The EXR header lacks the required attribute {}; the map does not depend on it.", name)};
-        }
+        if (says(fmt::format("'{}' attribute not found", name)))
+            return check(EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION,
+                         fmt::format("The EXR header lacks the required attribute {}; {}.", name,
+                                     name == std::string_view("displayWindow") ? "the map is the data window"
+                                                                               : "the map does not depend on it"));
     throw InputError(problem);
 }
 

@@ -11,7 +11,6 @@
 #include <cmath>
 #include <cstdint>
 #include <exception>
-#include <limits>
 #include <new>
 #include <string_view>
 #include <vector>
@@ -19,6 +18,7 @@
 #include "testbench/common/error.h"
 #include "testbench/input/map/exr_check.h"
 #include "testbench/input/map/map_file.h"
+#include "testbench/input/map/no_data.h"
 
 namespace tessera {
 namespace {
@@ -50,13 +50,6 @@ std::string choose_channel(const std::filesystem::path& path, const Imf::Channel
     return names.front();
 }
 
-void turn_bottom_up(HeightMap& map) {
-    const auto width = static_cast<std::ptrdiff_t>(map.width);
-    auto low = map.values.begin();
-    for (auto high = map.values.end() - width; low < high; low += width, high -= width)
-        std::swap_ranges(low, low + width, high);
-}
-
 void add_remarks(const std::string& name, Imf::PixelType type, HeightMap& map) {
     if (type == Imf::UINT) {
         map.repairs.push_back(
@@ -75,85 +68,138 @@ void add_remarks(const std::string& name, Imf::PixelType type, HeightMap& map) {
                                           smallest_normal));
 }
 
-/// Makes every value of a floating-point map finite, and sets its range.
-///
-///     NaN, -infinity -> lowest finite value        (usually a hole in a scan or terrain)
-///     +infinity      -> highest finite value
-///
-/// Each kind is counted and reported in `repairs`. range_low, range_high = lowest and highest finite value; equal
-/// for a constant map. Returns false, and leaves the map unchanged, if no value is finite.
-bool repair_non_finite(HeightMap& map) {
-    float low = std::numeric_limits<float>::infinity();
-    float high = -low;
-    for (const float value : map.values) {
-        if (std::isfinite(value)) {
-            low = std::min(low, value);
-            high = std::max(high, value);
+/// Another channel of the file than the map's.
+struct Other {
+    std::string name;
+    bool subsampled;
+    bool is_alpha;  // of which an opaque one, all 1, is no anomaly
+    std::int64_t different = 0;
+    bool opaque = true;
+};
+
+class ExrMap {
+  public:
+    ExrMap(const std::filesystem::path& path, const PixelWindow& image)
+        : file_(path.c_str(), 0), data_(file_.header().dataWindow()), image_(image) {}
+
+    const Imf::ChannelList& channels() const { return file_.header().channels(); }
+
+    /// Texels outside the data window are 0. Counts the texels in which the others differ.
+    HeightMap read(const std::string& name, std::vector<Other>& others) {
+        HeightMap map;
+        map.width = static_cast<int>(image_.width());
+        map.height = static_cast<int>(image_.height());
+        map.values.resize(static_cast<std::size_t>(map.width) * static_cast<std::size_t>(map.height));
+        // All channels are decoded anyway. OpenEXR keeps the block of lines that a strip ends in.
+        constexpr std::size_t most_values = 4 << 20, most_lines = 256;
+        const auto width = static_cast<std::size_t>(data_.max.x - data_.min.x) + 1;
+        const std::size_t fitting = std::clamp(most_values / (width * (1 + others.size())), std::size_t{1}, most_lines);
+        std::vector<std::vector<float>> strips(1 + others.size(), std::vector<float>(width * fitting));
+        const int lines = static_cast<int>(fitting);
+        const int top = std::max(data_.min.y, image_.top), bottom = std::min(data_.max.y, image_.bottom);
+        const int left = std::max(data_.min.x, image_.left), right = std::min(data_.max.x, image_.right);
+        for (int first = top; first <= bottom; first += lines) {
+            const int last = std::min(bottom, first + lines - 1);
+            read_strip(name, others, first, last, strips);
+            for (int y = first; y <= last; ++y) {
+                const std::size_t from = static_cast<std::size_t>(y - first) * width + static_cast<std::size_t>(left - data_.min.x);
+                const std::size_t count = static_cast<std::size_t>(right - left) + 1;
+                const float* const row = strips[0].data() + from;
+                std::copy_n(row, count, &map.at(left - image_.left, map.height - 1 - (y - image_.top)));
+                for (std::size_t k = 0; k < others.size(); ++k)
+                    compare(row, strips[k + 1].data() + from, count, others[k]);
+            }
+        }
+        return map;
+    }
+
+  private:
+    static void compare(const float* row, const float* other, std::size_t count, Other& result) {
+        for (std::size_t x = 0; x < count; ++x) {
+            const bool same = row[x] == other[x] || (std::isnan(row[x]) && std::isnan(other[x]));
+            result.different += same ? 0 : 1;
+            result.opaque = result.opaque && other[x] == 1;
         }
     }
-    if (!(low <= high))
-        return false;
-    std::int64_t nan_count = 0;
-    std::int64_t plus_count = 0;
-    std::int64_t minus_count = 0;
-    for (float& value : map.values) {
-        if (std::isnan(value)) {
-            ++nan_count;
-            value = low;
-        } else if (std::isinf(value)) {
-            ++(value > 0 ? plus_count : minus_count);
-            value = value > 0 ? high : low;
-        }
+
+    void read_strip(const std::string& name, const std::vector<Other>& others, int first, int last,
+                    std::vector<std::vector<float>>& strips) {
+        const Imath::Box2i window({data_.min.x, first}, {data_.max.x, last});
+        const std::size_t row = sizeof(float) * (static_cast<std::size_t>(data_.max.x - data_.min.x) + 1);
+        Imf::FrameBuffer frame;
+        const auto insert = [&](const std::string& channel, std::vector<float>& strip) {
+            frame.insert(channel, Imf::Slice::Make(Imf::FLOAT, strip.data(), window, sizeof(float), row));
+        };
+        insert(name, strips[0]);
+        for (std::size_t k = 0; k < others.size(); ++k)
+            if (!others[k].subsampled)
+                insert(others[k].name, strips[k + 1]);
+        file_.setFrameBuffer(frame);
+        file_.readPixels(first, last);
     }
-    const auto say = [&map](std::int64_t count, std::string_view kind, std::string_view which, float value) {
-        if (count > 0)
-            map.repairs.push_back(fmt::format("{} {} texel{} set to the {} finite value, {}.", count, kind,
-                                              count == 1 ? "" : "s", which, value));
-    };
-    say(nan_count, "NaN", "lowest", low);
-    say(plus_count, "+infinity", "highest", high);
-    say(minus_count, "-infinity", "lowest", low);
-    map.range_low = static_cast<double>(low);
-    map.range_high = static_cast<double>(high);
-    return true;
+
+    Imf::InputFile file_;
+    Imath::Box2i data_;
+    const PixelWindow& image_;
+};
+
+/// The channels that the map leaves out, if they hold anything else.
+std::string other_channels(const std::string& name, const std::vector<Other>& others) {
+    std::vector<std::string> names;
+    std::int64_t most = 0;
+    for (const Other& other : others)
+        if (other.subsampled || (other.different > 0 && !(other.is_alpha && other.opaque))) {
+            names.push_back(other.name);
+            most = std::max(most, other.different);
+        }
+    if (names.empty())
+        return {};
+    const bool one = names.size() == 1;
+    return fmt::format(
+        "The heights are those of channel {}; channel{} {} hold{} other values{}, and {} left out. map.channel takes "
+        "another one.",
+        printable_ascii(name), one ? "" : "s", printable_ascii(fmt::format("{}", fmt::join(names, ", "))),
+        one ? "s" : "", most > 0 ? fmt::format(" (at up to {} texels)", most) : "", one ? "was" : "were");
 }
 
-HeightMap read_checked(const std::filesystem::path& path, const std::string& wanted) {
+HeightMap read_checked(const std::filesystem::path& path, const std::string& wanted,
+                       const std::vector<double>& no_data, const PixelWindow& image) {
     Imf::setGlobalThreadCount(0);
-    Imf::InputFile file(path.c_str(), 0);
-    const std::string name = choose_channel(path, file.header().channels(), wanted);
-    const Imf::Channel channel = file.header().channels()[name];
-    if (channel.xSampling != 1 || channel.ySampling != 1)
+    ExrMap exr(path, image);
+    const std::string name = choose_channel(path, exr.channels(), wanted);
+    const Imf::Channel channel = exr.channels()[name];
+    const auto is_subsampled = [](const Imf::Channel& it) { return it.xSampling != 1 || it.ySampling != 1; };
+    if (is_subsampled(channel))
         refuse(path,
                fmt::format("the EXR file's channel {} holds only every {} x {} pixel; a map needs one value per texel. "
                            "Save it without subsampling.",
                            printable_ascii(name), channel.xSampling, channel.ySampling));
-    const Imath::Box2i window = file.header().dataWindow();
-    HeightMap map;
-    map.width = window.max.x - window.min.x + 1;
-    map.height = window.max.y - window.min.y + 1;
-    map.values.resize(static_cast<std::size_t>(map.width) * static_cast<std::size_t>(map.height));
-    Imf::FrameBuffer frame;
-    frame.insert(name, Imf::Slice::Make(Imf::FLOAT, map.values.data(), window, sizeof(float),
-                                        sizeof(float) * static_cast<std::size_t>(map.width)));
-    file.setFrameBuffer(frame);
-    file.readPixels(window.min.y, window.max.y);
-    turn_bottom_up(map);
-    if (!repair_non_finite(map))
-        refuse(path, fmt::format(
-                         "all {} texels of the EXR file's channel {} are NaN or infinite; a map needs finite heights.",
-                         map.values.size(), printable_ascii(name)));
+    std::vector<Other> others;
+    for (auto other = exr.channels().begin(); wanted.empty() && other != exr.channels().end(); ++other)
+        if (other.name() != name)
+            others.push_back({other.name(), is_subsampled(other.channel()), other.name() == std::string_view("A")});
+    HeightMap map = exr.read(name, others);
+    map.significant_bits = channel.type == Imf::HALF ? HeightMap::half_bits : HeightMap::float_bits;
+    const auto range = replace_missing(map, no_data);
+    if (!range)
+        refuse(path, fmt::format("all {} texels of the EXR file's channel {} are NaN, infinite or of a value in "
+                                 "map.no_data; a map needs finite heights.",
+                                 map.values.size(), printable_ascii(name)));
+    map.range_low = static_cast<double>((*range)[0]);
+    map.range_high = static_cast<double>((*range)[1]);
+    if (std::string text = other_channels(name, others); !text.empty())
+        map.repairs.push_back(std::move(text));
     add_remarks(name, channel.type, map);
     return map;
 }
 
 }  // namespace
 
-HeightMap read_exr(const std::filesystem::path& path, const std::string& channel) {
-    const std::vector<std::string> remarks = check_exr(path);
+HeightMap read_exr(const std::filesystem::path& path, const std::string& channel, const std::vector<double>& no_data) {
+    const ExrCheck check = check_exr(path);
     try {
-        HeightMap map = read_checked(path, channel);
-        map.repairs.insert(map.repairs.end(), remarks.begin(), remarks.end());
+        HeightMap map = read_checked(path, channel, no_data, check.image);
+        map.repairs.insert(map.repairs.end(), check.remarks.begin(), check.remarks.end());
         return map;
     } catch (const InputError&) {
         throw;

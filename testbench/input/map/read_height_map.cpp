@@ -8,6 +8,7 @@
 #include "testbench/common/error.h"
 #include "testbench/input/map/exr_reader.h"
 #include "testbench/input/map/map_file.h"
+#include "testbench/input/map/no_data.h"
 #include "testbench/input/map/pgm_reader.h"
 #include "testbench/input/map/png_reader.h"
 
@@ -58,18 +59,20 @@ Format format_of_content(const std::filesystem::path& path, std::string_view sta
                                              : "Name another file, or convert this one."));
 }
 
-HeightMap read_format(Format format, const std::filesystem::path& path, const std::string& channel) {
-    switch (format) {
-        case Format::exr: return read_exr(path, channel);
-        case Format::png: return read_png(path);
-        case Format::pgm: return read_pgm(path);
-    }
-    return {};
+HeightMap read_format(Format format, const std::filesystem::path& path, const std::string& channel,
+                      const std::vector<double>& no_data) {
+    if (format == Format::exr)
+        return read_exr(path, channel, no_data);
+    HeightMap map = format == Format::png ? read_png(path) : read_pgm(path);
+    if (!no_data.empty() && !replace_missing(map, no_data))
+        refuse(path, fmt::format("all {} texels have a value in map.no_data; a map needs heights.", map.values.size()));
+    return map;
 }
 
 }  // namespace
 
-HeightMap read_height_map(const std::filesystem::path& path, const std::string& channel) {
+HeightMap read_height_map(const std::filesystem::path& path, const std::string& channel,
+                          const std::vector<double>& no_data) {
     map_file_size(path);  // refuses anything but a regular file before opening it
     const Format format = format_of_content(path, map_file_start(path, 64));
     if (format != Format::exr && !channel.empty()) {
@@ -79,7 +82,7 @@ HeightMap read_height_map(const std::filesystem::path& path, const std::string& 
     }
     HeightMap map;
     try {
-        map = read_format(format, path, channel);
+        map = read_format(format, path, channel, no_data);
     } catch (const std::bad_alloc&) {
         throw ResourceError(fmt::format(
             "{}: there is not enough memory to read the map. Make the map smaller, or give the process more memory.",

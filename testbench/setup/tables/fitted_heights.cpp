@@ -1,141 +1,331 @@
 #include "testbench/setup/tables/fitted_heights.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 
 namespace tessera {
 
 namespace {
 
-/// The code at a grid point, and the dependence of the mesh's height there on the codes under its triangle's corners.
-struct Observation {
-    std::array<std::size_t, 3> texel{};
-    std::array<double, 3> weight{};
-    double code = 0;
-};
+using Weights = std::array<double, 3>;
 
-std::size_t texel_under(const QuantisedMap& map, const datapath::TexCoord& t, const datapath::Formats& formats) {
-    const datapath::MapGeometry& g = map.geometry;
-    const std::uint32_t row = datapath::texel_index(datapath::integer_part(t.v, formats), g.height, g.address_v);
-    return std::size_t{row} * g.width +
-           datapath::texel_index(datapath::integer_part(t.u, formats), g.width, g.address_u);
+std::uint32_t within(std::int64_t index, std::uint32_t size, datapath::AddressMode mode) {
+    const std::int64_t count = size;
+    if (mode == datapath::AddressMode::repeat)
+        return static_cast<std::uint32_t>((index % count + count) % count);
+    return static_cast<std::uint32_t>(std::clamp<std::int64_t>(index, 0, count - 1));
 }
 
-/// One for each grid point that the mesh covers; for base triangles on the same texels, one for each of them. Triangles
-/// that share a point on their edges agree on its height.
-std::vector<Observation> observe(const QuantisedMap& map, const std::vector<TextureTriangle>& mesh,
-                                 const datapath::Formats& formats) {
-    std::vector<Observation> observations;
-    std::vector<bool> seen(map.codes.size(), false);  // on edges
-    for (const TextureTriangle& triangle : mesh) {
-        const GridPoints points(triangle, map.geometry, formats);
-        Observation observation;
-        for (std::size_t k = 0; k < 3; ++k)
-            observation.texel[k] = texel_under(map, triangle[k], formats);
-        points.for_each([&](const GridPoint& point) {
-            const std::size_t texel = std::size_t{point.row} * map.geometry.width + point.column;
-            if (point.is_on_an_edge()) {
-                if (seen[texel])
-                    return;
-                seen[texel] = true;
+/// Heights at texel centres, in codes; NaN where there are none.
+struct Heights {
+    const datapath::MapGeometry& map;
+    std::array<double, 2> texel;
+    std::vector<float> codes;
+
+    /// Distance of a point from these heights, joined by straight lines along rows and columns. u, v: from the centre of
+    /// the first texel, in texels.
+    double distance(double u, double v, double height) const {
+        const auto column = static_cast<std::int64_t>(std::floor(u + 0.5)),
+                   row = static_cast<std::int64_t>(std::floor(v + 0.5));
+        const double smallest = std::min(texel[0], texel[1]);
+        double least = std::numeric_limits<double>::infinity();
+        for (std::int64_t ring = 0; ring <= farthest; ++ring) {
+            const double near = std::max(static_cast<double>(ring) - 1.5, 0.0) * smallest;
+            if (near * near >= least)
+                break;
+            for (std::int64_t y = row - ring; y <= row + ring; ++y) {
+                const std::int64_t step = y == row - ring || y == row + ring || ring == 0 ? 1 : 2 * ring;
+                for (std::int64_t x = column - ring; x <= column + ring; x += step) {
+                    const double above = code(x, y) - height;
+                    const double across = (static_cast<double>(x) - u) * texel[0],
+                                 along = (static_cast<double>(y) - v) * texel[1];
+                    const double to_right = to_line(across, texel[0], above, code(x + 1, y) - height) + along * along,
+                                 upwards = to_line(along, texel[1], above, code(x, y + 1) - height) + across * across;
+                    least = to_right < least ? to_right : least;  // false for NaN
+                    least = upwards < least ? upwards : least;
+                }
             }
-            for (std::size_t k = 0; k < 3; ++k)
-                observation.weight[k] = static_cast<double>(point.part[k]) / static_cast<double>(points.whole());
-            observation.code = map.codes[texel];
-            observations.push_back(observation);
-        });
-    }
-    return observations;
-}
-
-using Values = std::vector<double>;  // one per texel; 0 where there is no vertex
-
-double dot(const Values& a, const Values& b) {
-    double sum = 0;
-    for (std::size_t k = 0; k < a.size(); ++k)
-        sum += a[k] * b[k];
-    return sum;
-}
-
-void add(Values& to, double factor, const Values& values) {
-    for (std::size_t k = 0; k < to.size(); ++k)
-        to[k] += factor * values[k];
-}
-
-/// Least squares by conjugate gradients, preconditioned by the diagonal, starting from the map's own codes.
-class HeightFit {
-  public:
-    HeightFit(std::vector<Observation> observations, std::size_t texels)
-        : observations_(std::move(observations)), diagonal_(texels, 0) {
-        for (const Observation& o : observations_)
-            for (std::size_t k = 0; k < 3; ++k)
-                diagonal_[o.texel[k]] += o.weight[k] * o.weight[k];
-    }
-
-    void improve(Values& heights) const {
-        Values gradient = falls_from(heights);
-        Values direction = preconditioned(gradient);
-        double slope = dot(gradient, direction);
-        const double enough = slope * 1e-16;
-        for (int step = 0; step < most_steps && slope > enough; ++step) {
-            const Values change = normal_product(direction);
-            const double length = slope / dot(direction, change);
-            add(heights, length, direction);
-            add(gradient, -length, change);
-            Values next = preconditioned(gradient);
-            const double before = slope;
-            slope = dot(gradient, next);
-            add(next, slope / before, direction);
-            direction.swap(next);
         }
+        return std::sqrt(least);
+    }
+
+    double distance(std::size_t at, double height) const {
+        return distance(static_cast<double>(at % map.width), static_cast<double>(at / map.width), height);
     }
 
   private:
-    static constexpr int most_steps = 1000;
+    static constexpr std::int64_t farthest = 16;  // texels
 
-    static double height_of(const Observation& o, const Values& heights) {
-        return o.weight[0] * heights[o.texel[0]] + o.weight[1] * heights[o.texel[1]] +
-               o.weight[2] * heights[o.texel[2]];
+    double code(std::int64_t x, std::int64_t y) const {
+        return static_cast<double>(codes[std::size_t{within(y, map.height, map.address_v)} * map.width +
+                                         within(x, map.width, map.address_u)]);
     }
 
-    template <class Value>
-    Values gathered(const Value& value) const {
-        Values sums(diagonal_.size(), 0);
-        for (const Observation& o : observations_) {
-            const double of = value(o);
+    /// Squared distance of the origin from the line from (x, from) to (x + size, to); to (x, from) if `to` is NaN.
+    static double to_line(double x, double size, double from, double to) {
+        const double rise = std::isnan(to) ? 0 : to - from, length = std::isnan(to) ? 0 : size;
+        const double squared = length * length + rise * rise;
+        const double part = squared > 0 ? std::clamp(-(x * length + from * rise) / squared, 0.0, 1.0) : 0;
+        const double across = x + part * length, above = from + part * rise;
+        return across * across + above * above;
+    }
+};
+
+/// Sums of squares, and the largest distances, over the grid points of a mesh.
+struct Errors {
+    double vertical = 0, to_surface = 0, to_mesh = 0;
+    double largest_to_surface = 0, largest_to_mesh = 0;
+
+    bool exceed(const Errors& other) const {
+        return vertical > other.vertical || to_surface > other.to_surface || to_mesh > other.to_mesh ||
+               largest_to_surface > other.largest_to_surface || largest_to_mesh > other.largest_to_mesh;
+    }
+};
+
+class HeightFit {
+  public:
+    HeightFit(const QuantisedMap& map, const std::vector<TextureTriangle>& mesh, const datapath::Formats& formats,
+              const std::array<double, 2>& texel)
+        : map_(map),
+          mesh_(mesh),
+          formats_(formats),
+          vertex_of_(map.codes.size(), none),
+          surface_{map.geometry, texel, {map.codes.begin(), map.codes.end()}} {
+        triangles_.resize(mesh.size());
+        for (std::size_t t = 0; t < mesh.size(); ++t)
             for (std::size_t k = 0; k < 3; ++k)
-                sums[o.texel[k]] += o.weight[k] * of;
-        }
-        return sums;
-    }
-    Values falls_from(const Values& heights) const {
-        return gathered([&](const Observation& o) { return o.code - height_of(o, heights); });
-    }
-    Values normal_product(const Values& values) const {
-        return gathered([&](const Observation& o) { return height_of(o, values); });
-    }
-    Values preconditioned(Values values) const {
-        for (std::size_t k = 0; k < values.size(); ++k)
-            values[k] = diagonal_[k] > 0 ? values[k] / diagonal_[k] : 0;
-        return values;
+                triangles_[t].vertex[k] = vertex_at(mesh[t][k]);
+        for_each_point([&](Triangle& triangle, std::size_t at, const Weights& weight) {
+            for (std::size_t k = 0; k < 3; ++k) {
+                for (std::size_t j = 0; j < 3; ++j)
+                    triangle.product[k][j] += weight[k] * weight[j];
+                triangle.code[k] += weight[k] * map.codes[at];
+            }
+        });
+        corners_.resize(vertices_.size());
+        for (std::size_t t = 0; t < mesh.size(); ++t)
+            for (std::size_t k = 0; k < 3; ++k)
+                corners_[triangles_[t].vertex[k]].push_back({t, k});
     }
 
-    std::vector<Observation> observations_;
-    Values diagonal_;  // of the normal equations
+    QuantisedMap fit() {
+        relax();
+        const Heights own_mesh = heights_of_mesh(&Vertex::own);
+        const Errors own = errors_of(own_mesh, &Vertex::own);
+        for (int round = 0; round < most_rounds && hold(own_mesh, own, round); ++round) {
+        }
+        QuantisedMap fitted = map_;
+        if (!errors_of(heights_of_mesh(&Vertex::height), &Vertex::height).exceed(own))
+            for (const Vertex& vertex : vertices_)
+                fitted.codes[vertex.texel] = static_cast<std::uint16_t>(vertex.height);
+        return fitted;
+    }
+
+  private:
+    static constexpr std::uint32_t none = 0xffffffff;
+    static constexpr int most_sweeps = 1000, most_rounds = 16;
+    static constexpr double enough = 1.0 / 16;  // codes
+    static constexpr std::int64_t reach = 2;    // texels
+
+    struct Vertex {
+        std::size_t texel;
+        double own, height, lowest, highest;
+    };
+    /// Sums over its grid points: w_j w_k and w_k code, of the corners' weights w.
+    struct Triangle {
+        std::array<std::uint32_t, 3> vertex{};
+        std::array<Weights, 3> product{};
+        Weights code{};
+    };
+    struct Corner {
+        std::size_t triangle, corner;
+    };
+
+    std::uint32_t vertex_at(const datapath::TexCoord& t) {
+        const datapath::MapGeometry& g = map_.geometry;
+        const std::uint32_t row = datapath::texel_index(datapath::integer_part(t.v, formats_), g.height, g.address_v);
+        const std::uint32_t column = datapath::texel_index(datapath::integer_part(t.u, formats_), g.width, g.address_u);
+        const std::size_t texel = std::size_t{row} * g.width + column;
+        if (vertex_of_[texel] == none) {
+            vertex_of_[texel] = static_cast<std::uint32_t>(vertices_.size());
+            const double own = map_.codes[texel];
+            Vertex vertex{texel, own, own, own, own};
+            for (std::int64_t y = -reach; y <= reach; ++y)
+                for (std::int64_t x = -reach; x <= reach; ++x) {
+                    const double code = map_.code(within(std::int64_t{column} + x, g.width, g.address_u),
+                                                  within(std::int64_t{row} + y, g.height, g.address_v));
+                    vertex.lowest = std::min(vertex.lowest, code);
+                    vertex.highest = std::max(vertex.highest, code);
+                }
+            vertices_.push_back(vertex);
+        }
+        return vertex_of_[texel];
+    }
+
+    /// visit(triangle, texel, weights of its corners) once for each grid point that the mesh covers; for base triangles
+    /// on the same texels, for each of them. Triangles that share a point on their edges agree on its height.
+    template <class Visit>
+    void for_each_point(Visit&& visit) {
+        std::vector<bool> seen(map_.codes.size(), false);  // on edges
+        for (std::size_t t = 0; t < mesh_.size(); ++t) {
+            const GridPoints points(mesh_[t], map_.geometry, formats_);
+            points.for_each([&](const GridPoint& point) {
+                const std::size_t texel = std::size_t{point.row} * map_.geometry.width + point.column;
+                if (point.is_on_an_edge()) {
+                    if (seen[texel])
+                        return;
+                    seen[texel] = true;
+                }
+                Weights weight{};
+                for (std::size_t k = 0; k < 3; ++k)
+                    weight[k] = static_cast<double>(point.part[k]) / static_cast<double>(points.whole());
+                visit(triangles_[t], texel, weight);
+            });
+        }
+    }
+
+    /// Least squares, vertex by vertex.
+    void relax() {
+        double change = enough;
+        for (int sweep = 0; sweep < most_sweeps && change >= enough; ++sweep) {
+            change = 0;
+            for (std::uint32_t v = 0; v < vertices_.size(); ++v)
+                change = std::max(change, improve(v));
+        }
+        for (Vertex& vertex : vertices_)
+            vertex.height = std::floor(vertex.height + 0.5);
+    }
+
+    double improve(std::uint32_t v) {
+        Vertex& vertex = vertices_[v];
+        double sum = vertex.own, weight = 1;
+        for (const Corner& at : corners_[v]) {
+            const Triangle& triangle = triangles_[at.triangle];
+            sum += triangle.code[at.corner];
+            for (std::size_t k = 0; k < 3; ++k)
+                if (triangle.vertex[k] == v)
+                    weight += triangle.product[at.corner][k];
+                else
+                    sum -= triangle.product[at.corner][k] * vertices_[triangle.vertex[k]].height;
+        }
+        const double before = vertex.height;
+        vertex.height = std::clamp(sum / weight, vertex.lowest, vertex.highest);
+        return std::abs(vertex.height - before);
+    }
+
+    /// visit(triangle, u, v, weights of its corners) at each triangle's corners and at the centroids of its congruent
+    /// parts no longer than a texel.
+    template <class Visit>
+    void for_each_part(Visit&& visit) const {
+        const double texel = std::ldexp(1.0, formats_.texture.fraction);
+        for (std::size_t t = 0; t < mesh_.size(); ++t) {
+            std::array<double, 3> u{}, v{};
+            for (std::size_t k = 0; k < 3; ++k) {
+                u[k] = mesh_[t][k].u / texel - 0.5;
+                v[k] = mesh_[t][k].v / texel - 0.5;
+            }
+            const auto [left, right] = std::minmax({u[0], u[1], u[2]});
+            const auto [low, high] = std::minmax({v[0], v[1], v[2]});
+            const int parts = std::max(1, static_cast<int>(std::ceil(std::max(right - left, high - low))));
+            const auto at = [&](double a, double b) {
+                const Weights weight{a, b, 1 - a - b};
+                visit(triangles_[t], a * u[0] + b * u[1] + weight[2] * u[2], a * v[0] + b * v[1] + weight[2] * v[2],
+                      weight);
+            };
+            at(1, 0);
+            at(0, 1);
+            at(0, 0);
+            for (int a = 0; a < parts; ++a)
+                for (int b = 0; a + b < parts; ++b) {
+                    at((a + 1.0 / 3) / parts, (b + 1.0 / 3) / parts);
+                    if (a + b + 1 < parts)
+                        at((a + 2.0 / 3) / parts, (b + 2.0 / 3) / parts);
+                }
+        }
+    }
+
+    double height_at(const Triangle& triangle, const Weights& weight, double Vertex::*height) const {
+        double sum = 0;
+        for (std::size_t k = 0; k < 3; ++k)
+            sum += weight[k] * vertices_[triangle.vertex[k]].*height;
+        return sum;
+    }
+
+    Heights heights_of_mesh(double Vertex::*height) {
+        Heights mesh{map_.geometry, surface_.texel, {}};
+        mesh.codes.assign(map_.codes.size(), std::numeric_limits<float>::quiet_NaN());
+        for_each_point([&](const Triangle& triangle, std::size_t texel, const Weights& weight) {
+            mesh.codes[texel] = static_cast<float>(height_at(triangle, weight, height));
+        });
+        return mesh;
+    }
+
+    Errors errors_of(const Heights& mesh, double Vertex::*height) {
+        Errors errors;
+        for_each_point([&](const Triangle& triangle, std::size_t texel, const Weights& weight) {
+            const double code = map_.codes[texel], there = height_at(triangle, weight, height);
+            const double to_surface = surface_.distance(texel, there), to_mesh = mesh.distance(texel, code);
+            errors.vertical += (there - code) * (there - code);
+            errors.to_surface += to_surface * to_surface;
+            errors.to_mesh += to_mesh * to_mesh;
+            errors.largest_to_mesh = std::max(errors.largest_to_mesh, to_mesh);
+        });
+        for_each_part([&](const Triangle& triangle, double u, double v, const Weights& weight) {
+            errors.largest_to_surface =
+                std::max(errors.largest_to_surface, surface_.distance(u, v, height_at(triangle, weight, height)));
+        });
+        return errors;
+    }
+
+    /// Halves the differences from their own heights of triangles that come nearer to the largest distance; in the last
+    /// rounds takes them all. False if there are none.
+    bool hold(const Heights& own_mesh, const Errors& own, int round) {
+        // The points are samples a texel apart, between which the distance may be larger.
+        const double slack = 0.6 * std::min(surface_.texel[0], surface_.texel[1]);
+        const double near_surface = own.largest_to_surface - slack, near_mesh = own.largest_to_mesh - slack;
+        const Heights mesh = heights_of_mesh(&Vertex::height);
+        std::vector<bool> back(vertices_.size(), false);
+        bool any = false;
+        const auto move_back = [&](const Triangle& triangle) {
+            for (const std::uint32_t v : triangle.vertex)
+                if (vertices_[v].height != vertices_[v].own)
+                    any = back[v] = true;
+        };
+        for_each_point([&](const Triangle& triangle, std::size_t texel, const Weights&) {
+            const double code = map_.codes[texel], to_mesh = mesh.distance(texel, code);
+            if (to_mesh > near_mesh && to_mesh > own_mesh.distance(texel, code))
+                move_back(triangle);
+        });
+        for_each_part([&](const Triangle& triangle, double u, double v, const Weights& weight) {
+            const double to_surface = surface_.distance(u, v, height_at(triangle, weight, &Vertex::height));
+            if (to_surface > near_surface &&
+                to_surface > surface_.distance(u, v, height_at(triangle, weight, &Vertex::own)))
+                move_back(triangle);
+        });
+        for (std::uint32_t v = 0; v < vertices_.size(); ++v)
+            if (Vertex& vertex = vertices_[v]; back[v])
+                vertex.height = round < 3 ? std::trunc((vertex.height - vertex.own) / 2) + vertex.own : vertex.own;
+        return any;
+    }
+
+    const QuantisedMap& map_;
+    const std::vector<TextureTriangle>& mesh_;
+    const datapath::Formats& formats_;
+    std::vector<std::uint32_t> vertex_of_;  // by texel
+    std::vector<Vertex> vertices_;
+    std::vector<Triangle> triangles_;
+    std::vector<std::vector<Corner>> corners_;  // of each vertex
+    Heights surface_;
 };
 
 }  // namespace
 
 QuantisedMap fit_heights(const QuantisedMap& map, const std::vector<TextureTriangle>& mesh,
-                         const datapath::Formats& formats) {
-    Values heights(map.codes.begin(), map.codes.end());
-    HeightFit(observe(map, mesh, formats), heights.size()).improve(heights);
-    QuantisedMap fitted = map;
-    for (std::size_t k = 0; k < heights.size(); ++k) {
-        const double code = std::clamp(std::floor(heights[k] + 0.5), 0.0, static_cast<double>(map.highest_code()));
-        fitted.codes[k] = static_cast<std::uint16_t>(code);
-    }
-    return fitted;
+                         const datapath::Formats& formats, const std::array<double, 2>& texel) {
+    return HeightFit(map, mesh, formats, texel).fit();
 }
 
 }  // namespace tessera

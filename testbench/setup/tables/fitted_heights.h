@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <vector>
 
 #include "testbench/setup/quantised_map.h"
@@ -7,11 +8,20 @@
 namespace tessera {
 
 /// The map with other codes under the vertices of a mesh: those that minimise the mesh's squared vertical error over
-/// all grid points of the map, rounded to codes. Valid for one fixed mesh. Tables of the Rank, Bound and Curvature
-/// Tests made from the original map do not change; the Curvature Test's level 1, which reads codes, does.
+/// all grid points of the map, rounded to codes, under these conditions:
 ///
-/// mesh: texture coordinates of the finished triangles. Vertices in the same texel share its code.
+/// - A vertex keeps within the codes of its texel and of those up to two away, and its own code counts as one more grid
+///   point: where few grid points lie around a vertex, they alone do not determine its height.
+/// - At the grid points, neither the largest distance from the mesh to the surface nor that from the surface to the mesh
+///   rises. Where it would, the heights are moved back towards the map's own. If a root mean square would rise, of
+///   these distances or of the vertical error, the map is returned as it is.
+///
+/// Valid for one fixed mesh. Tables of the Rank, Bound and Curvature Tests made from the original map do not change; the
+/// Curvature Test's level 1, which reads codes, does.
+///
+/// mesh: texture coordinates of the finished triangles. Vertices in the same texel share its code. texel: its width and
+/// height, in units of a code's height.
 QuantisedMap fit_heights(const QuantisedMap& map, const std::vector<TextureTriangle>& mesh,
-                         const datapath::Formats& formats);
+                         const datapath::Formats& formats, const std::array<double, 2>& texel);
 
 }  // namespace tessera

@@ -1,6 +1,7 @@
 // The golden model's parameters from a job, against values derived by hand.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <limits>
 
 #include "golden/golden_setup.h"
 
@@ -151,6 +152,23 @@ TEST_CASE("half vector and light are in the viewer's coordinates") {
     scene.camera.up = {1, 0, 0};
     scene.light = {3, 4, 0};
     CHECK(near(light_as_seen(scene), {-0.8, 0.6, 0}));
+}
+
+TEST_CASE("values that are no heights get the lowest or the highest height") {
+    const float infinity = std::numeric_limits<float>::infinity(), lowest = std::numeric_limits<float>::lowest();
+    const auto heights = [](std::vector<float> values, const MapSource& source) { return heights_of(values, source); };
+    CHECK(heights({3, NAN, -infinity, 5, infinity}, {}) == std::vector<float>{3, 3, 3, 5, 5});
+    CHECK(heights({-9999, 3, 5, -9998}, {{-9999, -9998}}) == std::vector<float>{3, 3, 5, 3});
+    CHECK(heights({-9999, 3, 5, -9998}, {{-9998.5}}) == std::vector<float>{-9999, 3, 5, -9998});
+    CHECK(heights({lowest, 3}, {{-3.4e38}}) == std::vector<float>{3, 3});
+    CHECK(heights({-infinity, infinity, 3, 4}, {{-1.7e308}}) == std::vector<float>{3, 4, 3, 4});
+    CHECK(heights({0.1F, 3}, {{0.1}}) == std::vector<float>{3, 3});
+    INFO("half precision has steps of 8 above 8192, and ends at 65504");
+    CHECK(heights({-10000, 3, -9992}, {{-9999}, 1, 11}) == std::vector<float>{3, 3, -9992});
+    CHECK(heights({infinity, 3, 4}, {{1e20}, 1, 11}) == std::vector<float>{3, 3, 4});
+    INFO("samples of an integer format");
+    CHECK(heights({1, 30 / 255.F, 29 / 255.F}, {{255, 29}, 255}) == std::vector<float>{30 / 255.F, 30 / 255.F, 30 / 255.F});
+    CHECK(heights({0, 1, 2}, {{0}}) == std::vector<float>{1, 1, 2});
 }
 
 TEST_CASE("codes span the map's range and no more") {

@@ -58,6 +58,7 @@ JobValue another_value(const Key& key) {
         case KeyKind::number: return given == JobValue(key.range.low) ? key.range.high : key.range.low;
         case KeyKind::vector: return std::array<double, 3>{0.1, -1e-7, 12345.678};
         case KeyKind::span: return std::array<double, 2>{-0.5, 1533.25};
+        case KeyKind::numbers: return std::vector<double>{-3.4028234663852886e38, -9999, 0.1};
         case KeyKind::choice:
             return std::string(key.choices.back() == std::get<std::string>(given) ? key.choices.front()
                                                                                   : key.choices.back());
@@ -248,6 +249,23 @@ TEST_CASE("the map's range is full, data or two values") {
     apply_setting(job, "hardware.displacement_filter=bilinear");
     CHECK(job.hardware.displacement_filter == MapFilter::bilinear);
     CHECK_THAT(set_error_of("hardware.displacement_filter=bilinaer"), Contains("did you mean \"bilinear\"?"));
+}
+
+TEST_CASE("the values of missing data are one number or a list") {
+    CHECK(Job{}.map.no_data.empty());
+    CHECK(parse_job("map.no_data = -9999", "a").map.no_data == std::vector<double>{-9999});
+    Job job = parse_job("map.no_data = [-3.4e38, 1e+20, 65535]", "a");
+    CHECK(job.map.no_data == std::vector<double>{-3.4e38, 1e20, 65535});
+    apply_setting(job, "map.no_data=-32767.0");
+    CHECK(job.map.no_data == std::vector<double>{-32767});
+    apply_setting(job, "map.no_data=[]");
+    CHECK(job.map.no_data.empty());
+    CHECK_THAT(set_error_of("map.no_data=nan"), Contains("has a number that is not finite"));
+    CHECK_THAT(set_error_of("map.no_data=[1, -inf]"), Contains("has a number that is not finite"));
+    CHECK_THAT(set_error_of("map.no_data=none"), Contains("expected a number, or [up to 16 numbers]"));
+    CHECK_THAT(set_error_of("map.no_data=[1, \"2\"]"), Contains("expected a number, or [up to 16 numbers]"));
+    CHECK_THAT(set_error_of("map.no_data=[0,1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16]"),
+               Contains("has 17 numbers; the limit is 16"));
 }
 
 TEST_CASE("a file named without a source is an OBJ file, or an image") {

@@ -5,6 +5,7 @@
 
 #include "testbench/check/conformance/golden_job.h"
 #include "testbench/input/map/built_in_maps.h"
+#include "testbench/input/map/map_range.h"
 #include "testbench/input/mesh/built_in.h"
 #include "testbench/input/mesh/obj_reader.h"
 #include "testbench/job/job_keys.h"
@@ -209,6 +210,41 @@ TEST_CASE("a model beyond the range of the camera keys is refused with a remedy"
     CHECK_THAT(refusal(box(2, 2, 2, {0, -3e13, 5})),
                Contains("derived from a base mesh of 2 model units around (1, "
                         "-3e+13, 6); subtract (1, -3e+13, 6) from each vertex of the mesh"));
+}
+
+TEST_CASE("a displacement that is too large is refused with its cause, before a camera is derived from it") {
+    const BaseMesh plane = make_plane(3, 3, 2, 2);
+    const auto refusal = [&](Job job, HeightMap map) {
+        span_values(map, job.map.range);
+        return testing::input_error_of([&] { resolve_job(job, plane, map); });
+    };
+    const std::string far_range =
+        "The map's values are -3.4e+38 to 1235, of which displacement.scale = 0.25 spans 35 to 1235";
+    Job job;
+    job.displacement.scale = 0.25;
+    job.map.range = {MapRange::Kind::given, 35, 1235};
+    CHECK_THAT(refusal(job, map_of(-3.4e38F, 1235)), Contains(far_range + ": set map.range = \"data\""));
+    HeightMap voids = map_of(-3.4e38F, 1235);
+    voids.no_data_hint = "set map.no_data = -3.4e+38";
+    CHECK_THAT(refusal(job, voids), Contains(far_range + ". set map.no_data = -3.4e+38"));
+    CHECK(refusal(job, map_of(35, 1235)).empty());
+    for (const double high : {35 + 1e-300, 35.000000001}) {
+        job.map.range.high = high;
+        CHECK_THAT(refusal(job, map_of(35, 1235)), Contains("set map.range = \"data\""));
+    }
+    INFO("scale, bias, and the first frame's scale");
+    job = {};
+    job.map.range.kind = MapRange::Kind::data;
+    job.displacement.scale = 1e12;
+    CHECK_THAT(refusal(job, map_of(35, 1235)),
+               Contains("0 to 1e+12 model units") && Contains("lower displacement.scale"));
+    job.displacement.scale = 0.25;
+    CHECK(refusal(job, map_of(35, 3.4e38F)).empty());
+    job.displacement.bias = 1e11;
+    CHECK_THAT(refusal(job, map_of(35, 1235)), Contains("lower displacement.bias"));
+    job.displacement.bias = 0;
+    job.frames = {3, -1e9};
+    CHECK_THAT(refusal(job, map_of(35, 1235)), Contains("displacement.scale = -1e+09"));
 }
 
 TEST_CASE("setup and golden model refuse a job that is not resolved as a program error") {

@@ -48,7 +48,8 @@ void write_png(const std::filesystem::path& path, const PngImage& image) {
 
 void write_exr(const std::filesystem::path& path, const ExrImage& image) {
     const Imath::Box2i window({image.left, image.top}, {image.left + image.width - 1, image.top + image.height - 1});
-    Imf::Header header(Imath::Box2i({0, 0}, {15, 15}), window);
+    const auto display = [](const ExrImage::Window& w) { return Imath::Box2i({w.left, w.top}, {w.right, w.bottom}); };
+    Imf::Header header(image.display ? display(*image.display) : window, window);
     header.compression() = static_cast<Imf::Compression>(image.compression);
     const Imf::PixelType type = image.pixels == Pixels::uint   ? Imf::UINT
                                 : image.pixels == Pixels::half ? Imf::HALF
@@ -60,7 +61,7 @@ void write_exr(const std::filesystem::path& path, const ExrImage& image) {
     for (std::size_t c = 0; c < image.channels.size(); ++c) {
         std::vector<char> plane(image.values.size() * size);
         for (std::size_t i = 0; i < image.values.size(); ++i) {
-            const float value = image.values[i] + static_cast<float>(c);
+            const float value = image.planes.empty() ? image.values[i] + static_cast<float>(c) : image.planes[c][i];
             char* const at = plane.data() + i * size;
             if (type == Imf::UINT) {
                 const auto sample = static_cast<std::uint32_t>(value);

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -32,7 +33,12 @@ struct ExrImage {
     bool tiled = false;
     bool mip_map = false;
     int left = 0, top = 0;
-    std::vector<std::string> channels{"Y"};  // channel number i holds values + i
+    std::vector<std::string> channels{"Y"};  // channel number i holds values + i, or planes[i]
+    std::vector<std::vector<float>> planes{};
+    struct Window {
+        int left, top, right, bottom;
+    };
+    std::optional<Window> display{};  // nothing: the data window
 };
 void write_exr(const std::filesystem::path& path, const ExrImage& image);
 

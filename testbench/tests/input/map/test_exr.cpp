@@ -199,10 +199,18 @@ TEST_CASE("the OpenEXR project's own test images are read") {
         for (const float value : map.values)
             REQUIRE(std::isfinite(value));
     }
-    // The same picture with other windows.
-    const HeightMap t02 = read_height_map(folder / "oexr_t02.exr");
-    CHECK(t02.values == read_height_map(folder / "oexr_t05.exr").values);
-    CHECK(t02.values == read_height_map(folder / "oexr_t08.exr").values);
+    // The same picture with other windows: display windows of 400 x 300 at (1, 1), 340 x 260 at (30, 20), and 501 x 401
+    // at (0, 0) about data at (30, 40); the others' data are at (0, 0).
+    const HeightMap t02 = read_height_map(folder / "oexr_t02.exr"), t05 = read_height_map(folder / "oexr_t05.exr"),
+                    t08 = read_height_map(folder / "oexr_t08.exr");
+    REQUIRE(t02.width == 400);
+    REQUIRE(t05.width == 340);
+    REQUIRE(t08.width == 501);
+    for (const auto& [x, y] : {std::pair{40, 50}, {200, 100}, {369, 279}}) {  // in t02's and t05's data
+        const float value = t02.at(x - 1, t02.height - 1 - (y - 1));
+        CHECK(t05.at(x - 30, t05.height - 1 - (y - 20)) == value);
+        CHECK(t08.at(x + 30, t08.height - 1 - (y + 40)) == value);
+    }
 }
 
 TEST_CASE("an EXR chunk with less data than its pixels is refused, for any compression") {

@@ -1,0 +1,214 @@
+// Values that mark missing data: map.no_data, and the remark on maps that seem to have them.
+#include "testbench/input/map/no_data.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "testbench/common/error.h"
+#include "testbench/input/map/read_height_map.h"
+#include "testbench/tests/input/map/map_test_files.h"
+#include "testbench/tests/support/shared_data.h"
+#include "testbench/tests/support/source_folder.h"
+
+using namespace tessera;
+using namespace tessera::map_test;
+using Catch::Contains;
+
+namespace {
+
+constexpr int side = 16;
+
+/// A hill, `low` to `high` in source units, in which the first `holes` texels are `hole`. units: of the source.
+HeightMap hill(double low, double high, double hole, int holes, double units = 1) {
+    HeightMap map;
+    map.width = map.height = side;
+    map.source_units = units;
+    for (int k = 0; k < side * side; ++k) {
+        const double x = k % side - 7.5, y = k / side - 7.5;
+        const double height = low + (high - low) * std::exp(-(x * x + y * y) / 30);
+        map.values.push_back(static_cast<float>((k < holes ? hole : units > 1 ? std::round(height) : height) / units));
+    }
+    return map;
+}
+
+std::string hint(HeightMap map, const std::vector<double>& given = {}) {
+    suspect_no_data(map, given);
+    return map.no_data_hint;
+}
+
+/// The value that a hint advises, as in a job.
+std::string advised(const std::string& text) {
+    const std::string key = "map.no_data = ";
+    const std::size_t at = text.find(key);
+    return at == std::string::npos ? "" : text.substr(at + key.size());
+}
+
+ExrImage exr_of(const HeightMap& map, Pixels pixels) {
+    ExrImage image{map.width, map.height, map.values};
+    image.pixels = pixels;
+    return image;
+}
+
+}  // namespace
+
+TEST_CASE("texels of a no-data value get the lowest of the other values, and are counted") {
+    HeightMap map = hill(35, 1235, -9999, 5);
+    map.values[7] = std::numeric_limits<float>::quiet_NaN();
+    map.values[8] = std::numeric_limits<float>::infinity();
+    const float lowest = *std::min_element(map.values.begin() + 9, map.values.end());
+    const float highest = *std::max_element(map.values.begin() + 9, map.values.end());
+    const auto range = replace_missing(map, {-9999, 4});
+    REQUIRE(range);
+    CHECK(*range == std::array{lowest, highest});
+    for (const std::size_t k : {0U, 1U, 2U, 3U, 4U, 7U})
+        CHECK(map.values[k] == lowest);
+    CHECK(map.values[8] == highest);
+    REQUIRE(map.replaced.size() == 7);
+    CHECK(map.replaced[4].texel == 4);
+    CHECK(map.replaced[4].was == -9999);
+    CHECK(map.replaced[6].texel == 8);
+    REQUIRE(map.repairs.size() == 4);
+    CHECK_THAT(map.repairs[0], Contains("1 NaN texel set to the lowest remaining value, 35"));
+    CHECK_THAT(map.repairs[1], Contains("1 +infinity texel set to the highest remaining value"));
+    CHECK_THAT(map.repairs[2], Contains("5 no-data (-9999) texels set to the lowest remaining value, 35"));
+    CHECK_THAT(map.repairs[3], Contains("No texel has the value 4 of map.no_data; the map's values are 35"));
+}
+
+TEST_CASE("a no-data value matches the nearest number of the file's type, a huge one to 1 %") {
+    struct Row {
+        const char* name;
+        Pixels pixels;
+        float stored;
+        double given;
+        bool matches;
+    };
+    const float infinity = std::numeric_limits<float>::infinity();
+    const Row row = GENERATE_COPY(values<Row>({
+        {"exact", Pixels::float_, -32767, -32767, true},
+        {"a neighbour of it", Pixels::float_, -32767, -32766.99, false},
+        {"another value", Pixels::float_, -32767, -32768, false},
+        {"float's lowest, with its digits", Pixels::float_, std::numeric_limits<float>::lowest(), -3.4028234663852886e38, true},
+        {"float's lowest, as it is usually printed", Pixels::float_, std::numeric_limits<float>::lowest(), -3.4e38, true},
+        {"of the other sign", Pixels::float_, std::numeric_limits<float>::lowest(), 3.4e38, false},
+        {"double's lowest, which a float file has as -infinity", Pixels::float_, -infinity, -1.7976931348623157e308, true},
+        {"a decimal fraction", Pixels::float_, 0.1F, 0.1, true},
+        {"1e20", Pixels::float_, 1e20F, 1e20, true},
+        {"1e20, nearly", Pixels::float_, 1e20F, 1.001e20, false},
+        {"half has no -9999", Pixels::half, -9999, -9999, true},
+        {"half has no 1e20", Pixels::half, infinity, 1e20, true},
+        {"half's highest", Pixels::half, 65504, 65504, true},
+        {"half's neighbour", Pixels::half, -9999, -9992, false},
+        {"uint's highest", Pixels::uint, 4294967040.F, 4294967040.0, true},
+    }));
+    INFO(row.name);
+    const TestFolder folder;
+    write_exr(folder / "a.exr", exr_of(hill(35, 1235, static_cast<double>(row.stored), 3), row.pixels));
+    const HeightMap map = read_height_map(folder / "a.exr", "", {row.given});
+    CHECK(map.range_low == Approx(35).margin(1));
+    CHECK((map.range_high < 1300) == row.matches);
+    CHECK((map.replaced.size() == 3) == (row.matches || std::isinf(row.stored)));
+    const std::string text = row.matches ? "3 no-data" : "No texel has the value";
+    CHECK(std::any_of(map.repairs.begin(), map.repairs.end(),
+                      [&](const std::string& repair) { return repair.find(text) != std::string::npos; }));
+}
+
+TEST_CASE("no-data values of PGM and PNG are samples, and a map of nothing else is refused") {
+    const TestFolder folder;
+    for (const int hole : {0, 32768, 65535}) {
+        const HeightMap map = hill(1035, 2235, hole, 6, 65535);
+        std::vector<std::uint8_t> bytes;
+        std::string text = "P2 16 16 65535\n";
+        for (const float value : map.values) {
+            const auto sample = static_cast<unsigned>(std::lround(value * 65535));
+            bytes.push_back(static_cast<std::uint8_t>(sample >> 8));
+            bytes.push_back(static_cast<std::uint8_t>(sample));
+            text += std::to_string(sample) + "\n";
+        }
+        write_png(folder / "a.png", {side, side, 16, 0, bytes, {}});
+        write_all(folder / "a.pgm", text);
+        for (const char* const name : {"a.png", "a.pgm"}) {
+            const HeightMap read = read_height_map(folder / name, "", {static_cast<double>(hole)});
+            const auto [low, high] = std::minmax_element(read.values.begin(), read.values.end());
+            CHECK(*low * 65535 == Approx(1035));
+            CHECK(*high * 65535 > 2200);
+            CHECK(*high * 65535 <= 2235.01);
+            CHECK(read.replaced.size() == 6);
+            CHECK(read.range_low == 0);  // the whole of the format, as before
+            CHECK(read.range_high == 1);
+        }
+    }
+    write_all(folder / "b.pgm", "P2 2 1 9\n4 4\n");
+    CHECK_THROWS_WITH(read_height_map(folder / "b.pgm", "", {4}), Contains("all 2 texels have a value in map.no_data"));
+    write_exr(folder / "b.exr", {2, 1, {-9999, std::numeric_limits<float>::quiet_NaN()}});
+    CHECK_THROWS_WITH(read_height_map(folder / "b.exr", "", {-9999}), Contains("all 2 texels"));
+}
+
+TEST_CASE("a map that seems to have missing data says which value, how many texels, the gap and the key") {
+    CHECK(hint(hill(35, 1235, -9999, 20)) ==
+          "20 texels hold exactly the lowest value, -9999, which is 10034 from the next, 35.000015, while the others span "
+          "1180.23: if that marks missing data, set map.no_data = -9999");
+    struct Row {
+        double low, high, hole, units;
+    };
+    for (const Row& row : {Row{35, 1235, -32767, 1}, Row{35, 1235, -32768, 1}, Row{35, 1235, -3.4e38, 1},
+                           Row{35, 1235, 1e20, 1}, Row{35, 1235, 9999, 1}, Row{-8, -2, 0, 1}, Row{0.2, 0.3, -1, 1},
+                           Row{35, 1235, 65535, 65535}, Row{35, 1235, 32768, 65535}, Row{33000, 34200, 0, 65535},
+                           Row{1533, 2478, 0, 2478}}) {
+        INFO(row.hole << " in " << row.low << " to " << row.high);
+        for (const int holes : {3, 100}) {
+            HeightMap map = hill(row.low, row.high, row.hole, holes, row.units);
+            const std::string value = advised(hint(map));
+            REQUIRE_FALSE(value.empty());
+            REQUIRE(replace_missing(map, {std::stod(value)}));  // the advice works
+            CHECK(map.replaced.size() == static_cast<std::size_t>(holes));
+            CHECK(hint(map) == "");
+        }
+    }
+    INFO("several values, in addition to those given");
+    HeightMap map = hill(35, 1235, 1e20, 9);
+    map.values[0] = map.values[1] = -9999;
+    CHECK(advised(hint(map, {7})) == "[7, 1e+20, -9999]");
+    INFO("one texel only if nothing else is left of the relief");
+    CHECK(advised(hint(hill(35, 1235, -3.4e38, 1))) == "-3.4e+38");
+    CHECK(hint(hill(35, 1235, -9999, 1)) == "");
+}
+
+TEST_CASE("ordinary maps do not seem to have missing data") {
+    HeightMap sea = hill(0, 900, 0, 0);
+    for (float& value : sea.values)
+        value = std::max(value, 300.F);
+    CHECK(hint(sea) == "");
+    sea = hill(0, 900, 0, 0);
+    for (float& value : sea.values)
+        value = value < 100 ? 0 : value;  // a cliff coast
+    CHECK(hint(sea) == "");
+    CHECK(hint(hill(35, 1235, -500, 20)) == "");
+    CHECK(hint(hill(0.6, 0.9, 0, 40)) == "");          // objects on a floor
+    CHECK(hint(hill(150, 255, 0, 40, 255)) == "");     // the same in 8 bits
+    CHECK(hint(hill(0.1, 0.3, 1, 40)) == "");          // clipped towers
+    HeightMap mask = hill(0, 0, 1, 100, 65535);
+    CHECK(hint(mask) == "");
+    for (const int levels : {1, 2, 3, 7}) {
+        for (std::size_t k = 0; k < mask.values.size(); ++k)
+            mask.values[k] = static_cast<float>(k % 3 == 0 ? 0 : 0.9 + 0.01 * static_cast<double>(k % static_cast<unsigned>(levels)));
+        CHECK(hint(mask) == "");
+    }
+    int count = 0;
+    for (const auto& folder : {shared_data("maps"), source_folder() / "testbench/examples/jobs"}) {
+        if (folder.empty())
+            continue;
+        for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+            const std::string extension = entry.path().extension().string();
+            if (extension != ".pgm" && extension != ".png")
+                continue;
+            ++count;
+            INFO(entry.path());
+            CHECK(hint(read_height_map(entry.path())) == "");
+        }
+    }
+    CHECK(count >= 3);
+}
