@@ -16,15 +16,15 @@ namespace tessera {
 inline constexpr std::string_view auto_word = "auto";
 
 /// A key's value as in a job file; a choice is its name.
-using JobValue = std::variant<bool, std::int64_t, double, std::array<double, 2>, std::array<double, 3>, std::vector<double>,
-                              std::string>;
+using JobValue = std::variant<bool, std::int64_t, double, std::array<double, 2>, std::array<double, 3>,
+                              std::vector<double>, std::string>;
 
 enum class KeyKind {
     flag,
     integer,
     number,
-    vector,  ///< three numbers
-    span,    ///< a choice, or two numbers, the first lower
+    vector,   ///< three numbers
+    span,     ///< a choice, or two numbers, the first lower
     numbers,  ///< any number of them; a single one without brackets
     choice,
     text,

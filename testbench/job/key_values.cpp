@@ -96,7 +96,8 @@ struct FaultOf {
             return wrong_kind();
         if (values.size() > most_numbers)
             return fmt::format("has {} numbers; the limit is {}", values.size(), most_numbers);
-        const bool finite = std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
+        const bool finite =
+            std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
         return finite ? "" : "has a number that is not finite";
     }
     std::string operator()(const std::string& value) const {

@@ -26,9 +26,9 @@ std::string cause_of(const DisplacementSettings& settings, const HeightMap& map,
     const auto [lowest, highest] = std::minmax_element(map.values.begin(), map.values.end());
     const double low = static_cast<double>(*lowest), high = static_cast<double>(*highest);
     const auto source = [&](double value) { return value * map.source_units; };
-    const std::string values =
-        fmt::format("The map's values are {:.6g} to {:.6g}, of which displacement.scale = {:.6g} spans {:.6g} to {:.6g}",
-                    source(low), source(high), settings.scale, source(map.span_low), source(map.span_high));
+    const std::string values = fmt::format(
+        "The map's values are {:.6g} to {:.6g}, of which displacement.scale = {:.6g} spans {:.6g} to {:.6g}",
+        source(low), source(high), settings.scale, source(map.span_low), source(map.span_high));
     if (!map.no_data_hint.empty())
         return fmt::format("{}. {}", values, map.no_data_hint);
     const double span = map.span_high - map.span_low;
@@ -37,13 +37,13 @@ std::string cause_of(const DisplacementSettings& settings, const HeightMap& map,
         return fmt::format("{}: set map.range = \"data\"", values);
     const double halvings = std::isfinite(factor) ? std::ceil(std::log2(factor)) : 0;
     const int bits = position.bits + static_cast<int>(std::min(halvings, 64.0));
-    return fmt::format("{}: check the map's values{}{}", values,
-                       halvings > 0 ? fmt::format(", divide displacement.scale and displacement.bias by {}",
-                                                  std::exp2(halvings + 1))
-                                    : "",
-                       halvings == 0 || bits > datapath::FormatLimits::position_bits.most
-                           ? ""
-                           : fmt::format(", or set formats.position_bits = {}", bits));
+    return fmt::format(
+        "{}: check the map's values{}{}", values,
+        halvings > 0 ? fmt::format(", divide displacement.scale and displacement.bias by {}", std::exp2(halvings + 1))
+                     : "",
+        halvings == 0 || bits > datapath::FormatLimits::position_bits.most
+            ? ""
+            : fmt::format(", or set formats.position_bits = {}", bits));
 }
 
 }  // namespace

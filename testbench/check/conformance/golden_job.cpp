@@ -182,7 +182,7 @@ golden::Vertex GoldenJob::vertex(std::uint32_t triangle, std::size_t corner) con
 }
 
 glm::dvec2 GoldenJob::texel_size() const {
-    return tessera::texel_size(mesh_, height_map_, scene_.placement.scale);
+    return tessera::texel_size(frames_.size, height_map_, scene_.placement.scale);
 }
 
 double GoldenJob::unrounded_code(std::size_t texel) const {

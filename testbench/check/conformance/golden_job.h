@@ -55,7 +55,7 @@ class GoldenJob {
     const BaseMesh& mesh_;
     const HeightMap& height_map_;
     golden::BaseFrames frames_;
-    std::vector<float> own_heights_;    //  empty: all of the map's values are heights
+    std::vector<float> own_heights_;    // empty: all of the map's values are heights
     std::array<double, 2> code_range_;  // values of the lowest and the highest code
     golden::Scene scene_;
     golden::Parameters parameters_;

@@ -254,7 +254,7 @@ golden::DerivedRanks derived_ranks(const MachineSetup& setup, const GoldenJob& g
     for (const std::uint32_t number : result.base_triangles) {
         auto& corners = source.base.emplace_back();
         for (std::size_t k = 0; k < 3; ++k) {
-            corners[k] = golden::on_grid(golden.vertex(golden.mesh().triangles[number][k]).texture, step);
+            corners[k] = golden::on_grid(golden.vertex(number, k).texture, step);
             const glm::dvec2 reached = glm::floor(corners[k]) + 1.0;
             if (map.address_u() == golden::AddressMode::clamp)
                 covered.x = std::max(covered.x, reached.x);

@@ -73,8 +73,7 @@ std::string text_of(const PixelWindow& window) {
 }
 
 PixelWindow common(const PixelWindow& a, const PixelWindow& b) {
-    return {std::max(a.left, b.left), std::max(a.top, b.top), std::min(a.right, b.right),
-            std::min(a.bottom, b.bottom)};
+    return {std::max(a.left, b.left), std::max(a.top, b.top), std::min(a.right, b.right), std::min(a.bottom, b.bottom)};
 }
 
 ExrFile::ExrFile(const std::filesystem::path& path, int flags) : name_(path.string()) {
@@ -128,26 +127,32 @@ void ExrFile::check_header() {
 }
 
 void ExrFile::read_windows() {
-    const auto window = [](const exr_attr_box2i_t& box) { return PixelWindow{box.min.x, box.min.y, box.max.x, box.max.y}; };
+    const auto window = [](const exr_attr_box2i_t& box) {
+        return PixelWindow{box.min.x, box.min.y, box.max.x, box.max.y};
+    };
     exr_attr_box2i_t box{};
     check(exr_get_data_window(file_, 0, &box));
     data_ = image_ = window(box);
     width_ = data_.width();
     height_ = data_.height();
-    if (exr_get_display_window(file_, 0, &box) == EXR_ERR_SUCCESS)
-        image_ = window(box);
-    message_.clear();  // without a display window
+    // OpenEXR has a default for a missing one.
+    const exr_attribute_t* display = nullptr;
+    if (exr_get_attribute_by_name(file_, 0, "displayWindow", &display) == EXR_ERR_SUCCESS)
+        image_ = window(*display->box2i);
+    message_.clear();
     check_map_sides(name_, image_.width(), image_.height());
     constexpr int overscan = 2;
     if (width_ < 1 || height_ < 1 || width_ > overscan * largest_map_side || height_ > overscan * largest_map_side)
-        refuse(fmt::format("the EXR file's data window is {}; each side must be 1 to {}. Save it cropped to its display "
-                           "window, {}.",
-                           text_of(data_), overscan * largest_map_side, text_of(image_)));
+        refuse(
+            fmt::format("the EXR file's data window is {}; each side must be 1 to {}. Save it cropped to its display "
+                        "window, {}.",
+                        text_of(data_), overscan * largest_map_side, text_of(image_)));
     const PixelWindow both = common(data_, image_);
     if (both.width() < 1 || both.height() < 1)
-        refuse(fmt::format("the EXR file's data window, {}, lies outside its display window, {}, which is the image: it "
-                           "has no pixel. Save it with a display window around its pixels.",
-                           text_of(data_), text_of(image_)));
+        refuse(
+            fmt::format("the EXR file's data window, {}, lies outside its display window, {}, which is the image: it "
+                        "has no pixel. Save it with a display window around its pixels.",
+                        text_of(data_), text_of(image_)));
 }
 
 std::string ExrFile::windows_remark() const {
@@ -167,7 +172,8 @@ void ExrFile::check_chunks() const {
     for (std::int64_t y = 0; y * chunk_height_ < height_; ++y)
         for (std::int64_t x = 0; x * chunk_width_ < width_; ++x) {
             check(tiled_ ? exr_read_tile_chunk_info(file_, 0, static_cast<int>(x), static_cast<int>(y), 0, 0, &chunk)
-                         : exr_read_scanline_chunk_info(file_, 0, data_.top + static_cast<int>(y * chunk_height_), &chunk));
+                         : exr_read_scanline_chunk_info(file_, 0, data_.top + static_cast<int>(y * chunk_height_),
+                                                        &chunk));
             if (chunk.compression == EXR_COMPRESSION_NONE && chunk.packed_size != chunk.unpacked_size)
                 refuse(
                     fmt::format("a chunk of the EXR file holds {} bytes of pixels of {}. It is damaged: save or "

@@ -102,12 +102,14 @@ class ExrMap {
             const int last = std::min(bottom, first + lines - 1);
             read_strip(name, others, first, last, strips);
             for (int y = first; y <= last; ++y) {
-                const std::size_t from = static_cast<std::size_t>(y - first) * width + static_cast<std::size_t>(left - data_.min.x);
+                const std::size_t from =
+                    static_cast<std::size_t>(y - first) * width + static_cast<std::size_t>(left - data_.min.x);
                 const std::size_t count = static_cast<std::size_t>(right - left) + 1;
                 const float* const row = strips[0].data() + from;
                 std::copy_n(row, count, &map.at(left - image_.left, map.height - 1 - (y - image_.top)));
                 for (std::size_t k = 0; k < others.size(); ++k)
-                    compare(row, strips[k + 1].data() + from, count, others[k]);
+                    if (!others[k].subsampled)
+                        compare(row, strips[k + 1].data() + from, count, others[k]);
             }
         }
         return map;
@@ -162,8 +164,8 @@ std::string other_channels(const std::string& name, const std::vector<Other>& ot
         one ? "s" : "", most > 0 ? fmt::format(" (at up to {} texels)", most) : "", one ? "was" : "were");
 }
 
-HeightMap read_checked(const std::filesystem::path& path, const std::string& wanted,
-                       const std::vector<double>& no_data, const PixelWindow& image) {
+HeightMap read_checked(const std::filesystem::path& path, const std::string& wanted, const std::vector<double>& no_data,
+                       const PixelWindow& image) {
     Imf::setGlobalThreadCount(0);
     ExrMap exr(path, image);
     const std::string name = choose_channel(path, exr.channels(), wanted);

@@ -94,8 +94,9 @@ std::optional<std::array<float, 2>> replace_missing(HeightMap& map, const std::v
     for (std::size_t k = 0; k < no_data.size(); ++k) {
         say(first_no_data + k, fmt::format("no-data ({})", no_data[k]), lowest, low);
         if (counts[first_no_data + k] == 0)
-            map.repairs.push_back(fmt::format("No texel has the value {} of map.no_data; the map's values are {} to {}.",
-                                              no_data[k], in_source(low, map), in_source(high, map)));
+            map.repairs.push_back(
+                fmt::format("No texel has the value {} of map.no_data; the map's values are {} to {}.", no_data[k],
+                            in_source(low, map), in_source(high, map)));
     }
     return std::array{low, high};
 }
@@ -166,18 +167,19 @@ void suspect_no_data(HeightMap& map, const std::vector<double>& given) {
             if (low.value == high.value || (normalised && (it.value == 0 || it.value == 1)))
                 continue;
             const double gap = std::abs(static_cast<double>(it.next) - static_cast<double>(it.value));
-            const double others = std::abs(static_cast<double>(lowest ? high.value : low.value) - static_cast<double>(it.next));
+            const double others =
+                std::abs(static_cast<double>(lowest ? high.value : low.value) - static_cast<double>(it.next));
             if (gap < others * (it.count > 1 ? 1 : far_for_one))
                 continue;
             Between without = rest;
             (lowest ? without.floor : without.ceiling) = it.value;
             if (!without.has_values(fewest_others))
                 continue;
-            texts.push_back(fmt::format("{} texel{} exactly the {} value, {}, which is {:.6g} from the next, {}, while the others "
-                                        "span {:.6g}",
-                                        it.count, it.count == 1 ? " holds" : "s hold", lowest ? "lowest" : "highest",
-                                        in_source(it.value, map), gap * map.source_units, in_source(it.next, map),
-                                        others * map.source_units));
+            texts.push_back(fmt::format(
+                "{} texel{} exactly the {} value, {}, which is {:.6g} from the next, {}, while the others "
+                "span {:.6g}",
+                it.count, it.count == 1 ? " holds" : "s hold", lowest ? "lowest" : "highest", in_source(it.value, map),
+                gap * map.source_units, in_source(it.next, map), others * map.source_units));
             suspects.push_back(it.value);
             rest = without;
             found = true;

@@ -45,7 +45,7 @@ std::vector<SaturationFigure> saturation_figures(const MachineSetup& setup, cons
          without_tangents
              ? nullptr
              : "the normals or tangents at an edge's ends are opposite: raise mesh.columns and mesh.rows, or in a mesh's file "
-                    "remove the normals (vn) or the mirrored texture coordinates",
+               "remove the normals (vn) or the mirrored texture coordinates",
          without_tangents ? "most are tangents between points of the base mesh that have none, see the notes on it"
                           : nullptr},
         {"generation", saturations.generation, "value",

@@ -60,8 +60,8 @@ struct Heights {
     static constexpr std::int64_t farthest = 16;  // texels
 
     double code(std::int64_t x, std::int64_t y) const {
-        return static_cast<double>(codes[std::size_t{within(y, map.height, map.address_v)} * map.width +
-                                         within(x, map.width, map.address_u)]);
+        return static_cast<double>(
+            codes[std::size_t{within(y, map.height, map.address_v)} * map.width + within(x, map.width, map.address_u)]);
     }
 
     /// Squared distance of the origin from the line from (x, from) to (x + size, to); to (x, from) if `to` is NaN.
@@ -258,16 +258,21 @@ class HeightFit {
         Heights mesh{map_.geometry, surface_.texel, {}};
         mesh.codes.assign(map_.codes.size(), std::numeric_limits<float>::quiet_NaN());
         for_each_point([&](const Triangle& triangle, std::size_t texel, const Weights& weight) {
+            shares_texels_ = shares_texels_ || (height == &Vertex::own && !std::isnan(mesh.codes[texel]));
             mesh.codes[texel] = static_cast<float>(height_at(triangle, weight, height));
         });
         return mesh;
+    }
+
+    double distance_to(const Heights& mesh, std::size_t texel, double code) const {
+        return shares_texels_ ? 0 : mesh.distance(texel, code);
     }
 
     Errors errors_of(const Heights& mesh, double Vertex::*height) {
         Errors errors;
         for_each_point([&](const Triangle& triangle, std::size_t texel, const Weights& weight) {
             const double code = map_.codes[texel], there = height_at(triangle, weight, height);
-            const double to_surface = surface_.distance(texel, there), to_mesh = mesh.distance(texel, code);
+            const double to_surface = surface_.distance(texel, there), to_mesh = distance_to(mesh, texel, code);
             errors.vertical += (there - code) * (there - code);
             errors.to_surface += to_surface * to_surface;
             errors.to_mesh += to_mesh * to_mesh;
@@ -295,8 +300,8 @@ class HeightFit {
                     any = back[v] = true;
         };
         for_each_point([&](const Triangle& triangle, std::size_t texel, const Weights&) {
-            const double code = map_.codes[texel], to_mesh = mesh.distance(texel, code);
-            if (to_mesh > near_mesh && to_mesh > own_mesh.distance(texel, code))
+            const double code = map_.codes[texel], to_mesh = distance_to(mesh, texel, code);
+            if (to_mesh > near_mesh && to_mesh > distance_to(own_mesh, texel, code))
                 move_back(triangle);
         });
         for_each_part([&](const Triangle& triangle, double u, double v, const Weights& weight) {
@@ -319,6 +324,7 @@ class HeightFit {
     std::vector<Triangle> triangles_;
     std::vector<std::vector<Corner>> corners_;  // of each vertex
     Heights surface_;
+    bool shares_texels_ = false;  // several base triangles lie on them: `Heights` has only one of the mesh's heights
 };
 
 }  // namespace

@@ -119,6 +119,24 @@ TEST_CASE("a run whose triangles were all culled has no mesh to compare") {
     CHECK_THAT(read_all(here.path() / "runs/half_donut/error.txt"), Contains("no mesh") && Contains("culling"));
 }
 
+TEST_CASE("fitted heights raise neither the root mean square nor the largest distance, in either direction") {
+    const TestFolder here;
+    const std::string job =
+        GENERATE("half_donut", "crater_lake_24", "crater_lake_704", "crater_lake_rank", "teapot", "head");
+    INFO(job);
+    const auto error_with = [&](const char* heights) {
+        run_job(here.path(), Arguments{(source_folder() / "testbench/examples/jobs" / (job + ".toml")).string()} +
+                                 set({std::string("map.heights=") + heights, "output.folder=run"}));
+        return compare(here.path(), "run");
+    };
+    const json given = error_with("given"), fitted = error_with("fitted");
+    for (const char* const figure :
+         {"reference_to_mesh_max", "reference_to_mesh_rms", "mesh_to_reference_max", "mesh_to_reference_rms"}) {
+        INFO(figure);
+        CHECK(value(fitted, "interpolated", figure) <= value(given, "interpolated", figure));
+    }
+}
+
 TEST_CASE("compare refuses a folder that is not a run, and writes nothing") {
     const TestFolder here;
     refused({"compare"}, here.path(), {"RUN", "--help"});

@@ -116,8 +116,8 @@ TEST_CASE("missing data of a map are named, and setting the key as the note says
         return succeed(Arguments{"run"} + set(settings + more), here.path()).out;
     };
     const std::string note = run({}), key = "set map.no_data = ";
-    REQUIRE_THAT(note, Contains("note: map: 16 texels hold exactly the " + std::string(hole == "0" ? "lowest" : "highest") +
-                                " value, " + hole + ","));
+    REQUIRE_THAT(note, Contains("note: map: 16 texels hold exactly the " +
+                                std::string(hole == "0" ? "lowest" : "highest") + " value, " + hole + ","));
     const std::string advice = note.substr(note.find(key) + 4), setting = advice.substr(0, advice.find(".\n"));
     const std::string mended = run({setting});
     CHECK_THAT(mended, Contains("note: map: 16 no-data (" + hole + ") texels set to the lowest remaining value, "));

@@ -86,13 +86,13 @@ TEST_CASE("tessera rank: a row has the figures of a run with its threshold, and 
     CHECK(runs >= 4);
 }
 
-TEST_CASE("rank: fitted heights bring the same mesh a seventh closer to the original map") {
+TEST_CASE("rank: fitted heights bring the same mesh a tenth closer to the original map") {
     const TestFolder here;
     const Arguments threshold{"--set", "tests.rank_threshold=0.038"};
     const CraterLakeRun given = ranked(here, threshold);
     const CraterLakeRun fitted = ranked(here, threshold + Arguments{"--set", "map.heights=fitted"});
     CHECK(fitted.triangles == given.triangles);
-    CHECK(fitted.rms < 0.87 * given.rms);
+    CHECK(fitted.rms < 0.9 * given.rms);
 }
 
 /// With the paper's tests the least error with 2,384 triangles is 3.37 pixels, from a sweep over both thresholds and

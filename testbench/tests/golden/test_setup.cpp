@@ -167,7 +167,8 @@ TEST_CASE("values that are no heights get the lowest or the highest height") {
     CHECK(heights({-10000, 3, -9992}, {{-9999}, 1, 11}) == std::vector<float>{3, 3, -9992});
     CHECK(heights({infinity, 3, 4}, {{1e20}, 1, 11}) == std::vector<float>{3, 3, 4});
     INFO("samples of an integer format");
-    CHECK(heights({1, 30 / 255.F, 29 / 255.F}, {{255, 29}, 255}) == std::vector<float>{30 / 255.F, 30 / 255.F, 30 / 255.F});
+    CHECK(heights({1, 30 / 255.F, 29 / 255.F}, {{255, 29}, 255}) ==
+          std::vector<float>{30 / 255.F, 30 / 255.F, 30 / 255.F});
     CHECK(heights({0, 1, 2}, {{0}}) == std::vector<float>{1, 1, 2});
 }
 

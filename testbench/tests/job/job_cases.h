@@ -94,7 +94,8 @@ inline JobValue random_value(const Key& key) {
             const double a = random_number(key.range), b = random_number(key.range);
             return a < b ? std::array<double, 2>{a, b} : std::array<double, 2>{key.range.low, key.range.high};
         }
-        case KeyKind::numbers: return std::vector<double>(*rc::gen::inRange<std::size_t>(0, 4), random_number({-1e40, 1e40}));
+        case KeyKind::numbers:
+            return std::vector<double>(*rc::gen::inRange<std::size_t>(0, 4), random_number({-1e40, 1e40}));
         case KeyKind::choice: return std::string(*rc::gen::elementOf(key.choices));
         case KeyKind::text:
         case KeyKind::file: return random_text();
