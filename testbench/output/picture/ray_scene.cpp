@@ -52,29 +52,35 @@ void for_each_packet(std::size_t rays, const Trace& trace) {
     }
 }
 
-// How a packet's rays are traced: they are coherent.
+// Embree 3 and 4 take the flag that a packet's rays are coherent in different ways.
 #if RTC_VERSION_MAJOR == 3
-struct Tracing : RTCIntersectContext {
-    Tracing() {
-        rtcInitIntersectContext(this);
-        flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    }
-};
-using Intersecting = Tracing;
-using Occluding = Tracing;
+RTCIntersectContext coherent_context() {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    return context;
+}
+void intersect(const int* valid, RTCScene scene, RTCRayHit8& hits) {
+    RTCIntersectContext context = coherent_context();
+    rtcIntersect8(valid, scene, &context, &hits);
+}
+void occlude(const int* valid, RTCScene scene, RTCRay8& rays) {
+    RTCIntersectContext context = coherent_context();
+    rtcOccluded8(valid, scene, &context, &rays);
+}
 #else
-struct Intersecting : RTCIntersectArguments {
-    Intersecting() {
-        rtcInitIntersectArguments(this);
-        flags = RTC_RAY_QUERY_FLAG_COHERENT;
-    }
-};
-struct Occluding : RTCOccludedArguments {
-    Occluding() {
-        rtcInitOccludedArguments(this);
-        flags = RTC_RAY_QUERY_FLAG_COHERENT;
-    }
-};
+void intersect(const int* valid, RTCScene scene, RTCRayHit8& hits) {
+    RTCIntersectArguments arguments;
+    rtcInitIntersectArguments(&arguments);
+    arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+    rtcIntersect8(valid, scene, &hits, &arguments);
+}
+void occlude(const int* valid, RTCScene scene, RTCRay8& rays) {
+    RTCOccludedArguments arguments;
+    rtcInitOccludedArguments(&arguments);
+    arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+    rtcOccluded8(valid, scene, &rays, &arguments);
+}
 #endif
 
 }  // namespace
@@ -112,14 +118,13 @@ RayScene::RayScene(const RenderMesh& mesh) {
 
 void RayScene::first_hits(const std::vector<Ray>& rays, std::vector<std::uint32_t>& triangles) const {
     triangles.resize(rays.size());
-    Intersecting how;
     for_each_packet(rays.size(), [&](std::size_t first, std::size_t count, const int* valid) {
         RTCRayHit8 hits;
         for (std::size_t lane = 0; lane < count; ++lane) {
             put(rays[first + lane], lane, hits.ray);
             hits.hit.primID[lane] = hits.hit.geomID[lane] = hits.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
         }
-        rtcIntersect8(valid, scene_.get(), &how, &hits);
+        intersect(valid, scene_.get(), hits);
         for (std::size_t lane = 0; lane < count; ++lane)
             triangles[first + lane] =
                 hits.hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID ? nothing : hits.hit.primID[lane];
@@ -128,7 +133,6 @@ void RayScene::first_hits(const std::vector<Ray>& rays, std::vector<std::uint32_
 
 void RayScene::occlusions(const std::vector<glm::vec3>& origins, const glm::dvec3& direction,
                           std::vector<std::uint8_t>& occluded) const {
-    Occluding how;
     RTCRay8 rays{};
     for (std::size_t lane = 0; lane < packet; ++lane)
         put({{}, direction}, lane, rays);
@@ -140,7 +144,7 @@ void RayScene::occlusions(const std::vector<glm::vec3>& origins, const glm::dvec
             rays.org_z[lane] = origin.z;
             rays.tfar[lane] = std::numeric_limits<float>::infinity();
         }
-        rtcOccluded8(valid, scene_.get(), &how, &rays);
+        occlude(valid, scene_.get(), rays);
         for (std::size_t lane = 0; lane < count; ++lane)
             occluded.push_back(rays.tfar[lane] < 0);
     });
