@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <iostream>
+#include <iterator>
 #include <regex>
 
 #include "modules/version.h"
@@ -97,15 +99,15 @@ std::vector<std::string> names_of(const fs::path& headers) {
     return names;
 }
 
-/// The lines of the headers in a preprocessor's output.
+/// The lines of the headers in a preprocessor's output, without white space: gcc and clang break macros differently.
 std::string lines_from(const fs::path& headers, const std::string& preprocessed) {
     std::string kept;
     bool within = false;
     for (const std::string& line : lines_of(preprocessed)) {
         if (line.rfind("# ", 0) == 0)
             within = line.find('"' + headers.string()) != std::string::npos;
-        else if (within && !line.empty())
-            kept += line + '\n';
+        else if (within)
+            std::copy_if(line.begin(), line.end(), std::back_inserter(kept), [](char c) { return c != ' '; });
     }
     return kept;
 }
@@ -135,7 +137,7 @@ std::vector<std::string> code_in(const fs::path& markdown, const std::string& la
     for (const std::string& line : lines_of(read_all(markdown)))
         if (line.rfind("```", 0) == 0)
             within = line == "```" + language;
-        else if (within && !line.empty())
+        else if (within)
             code.push_back(line);
     return code;
 }
@@ -265,7 +267,7 @@ TEST_CASE("the installed headers are the same for every client's macros and opti
         return lines_from(headers, require_success(preprocess + flags, folder.path()));
     };
     const std::string plain = seen_by(TESSERA_COMPILER, {"-O0"});
-    CHECK_THAT(plain, Contains("packed_streams = false"));
+    CHECK_THAT(plain, Contains("packed_streams=false"));
     CHECK((plain == seen_by(TESSERA_COMPILER, {"-O2", "-DNDEBUG"})));
     CHECK((plain ==
            seen_by(TESSERA_COMPILER, {"-D_DEBUG", "-DDEBUG", "-D_GLIBCXX_ASSERTIONS", "-D_FORTIFY_SOURCE=2", "-O1"})));
