@@ -263,7 +263,9 @@ TEST_CASE("the installed headers are the same for every client's macros and opti
         all += "#include \"" + name + "\"\n";
     write_all(folder.path() / "all.cpp", all);
     const auto seen_by = [&](const std::string& compiler, const Arguments& flags) {
-        const Arguments preprocess{compiler, "-std=c++" TESSERA_STANDARD, "-E", "-I", headers.string(), "all.cpp"};
+        // gcc and clang number the lines of a statement that spans several differently.
+        const Arguments preprocess{
+            compiler, "-std=c++" TESSERA_STANDARD, "-E", "-D__LINE__=0", "-w", "-I", headers.string(), "all.cpp"};
         return lines_from(headers, require_success(preprocess + flags, folder.path()));
     };
     const std::string plain = seen_by(TESSERA_COMPILER, {"-O0"});
