@@ -77,7 +77,9 @@ TEST_CASE("every key refuses values of every other type, with line and column") 
             }
         }
         INFO(key.name);
-        CHECK(refused >= values.size() - 2);
+        // A list of numbers is also one number, or none.
+        const std::size_t most_accepted = key.kind == KeyKind::numbers ? 5 : 2;
+        CHECK(refused >= values.size() - most_accepted);
     }
 }
 
