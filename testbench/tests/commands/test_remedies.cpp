@@ -45,18 +45,13 @@ square() {
 # bound KEY=VALUE ...: a job that meets every condition of tests.bound_threshold, with these keys
 bound() {
     run hardware.height_test=rank formats.bound_bits=8 mesh.source=lattice mesh.spacing=16 tests.bound_threshold=0.05 \
-        hardware.triangulation=greatest_rank tests.normal=false tests.view=false tests.generation=false "$@"
+        hardware.triangulation=greatest_rank tests.normal=false tests.view=false tests.generation_limit=10 "$@"
 }
 # fold: an OBJ file, two squares at a right angle, with a normal for each
 fold() {
     printf 'v %s\n' '0 0 0' '1 0 0' '1 1 0' '0 1 0' '1 0 1' '1 1 1'
     printf 'vt %s\n' '0 0' '.5 0' '.5 1' '0 1' '1 0' '1 1'
     printf '%s\n' 'vn 0 0 1' 'vn -1 0 0' 'f 1/1/1 2/2/1 3/3/1 4/4/1' 'f 2/2/2 5/5/2 6/6/2 3/3/2'
-}
-# strip U: an OBJ file, two squares side by side; u is 0, 1, U
-strip() {
-    for y in 0 1; do printf 'v %d %d 0\n' 0 $y 1 $y 2 $y; printf 'vt %d %d\n' 0 $y 1 $y $1 $y; done
-    echo f 1/1 2/2 5/5 4/4; echo f 2/2 3/3 6/6 5/5
 }
 # patch [SIZE]: a file of one Bezier patch, a flat square
 patch() {
