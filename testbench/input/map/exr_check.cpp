@@ -33,7 +33,7 @@ class ExrFile {
     ExrFile& operator=(const ExrFile&) = delete;
     ~ExrFile() { exr_finish(&file_); }
 
-    void check_header();
+    void check_header(bool has_display_window);
     void check_chunks() const;
 
     const PixelWindow& image() const { return image_; }
@@ -41,7 +41,7 @@ class ExrFile {
     std::string windows_remark() const;
 
   private:
-    void read_windows();
+    void read_windows(bool has_display_window);
 
     [[noreturn]] void refuse(std::string_view why) const { throw InputError(fmt::format("{}: {}", name_, why)); }
 
@@ -85,7 +85,7 @@ ExrFile::ExrFile(const std::filesystem::path& path, int flags) : name_(path.stri
     check(exr_start_read(&file_, name_.c_str(), &settings));
 }
 
-void ExrFile::check_header() {
+void ExrFile::check_header(bool has_display_window) {
     int parts = 0;
     exr_storage_t storage{};
     const exr_attr_chlist_t* channels = nullptr;
@@ -99,7 +99,7 @@ void ExrFile::check_header() {
             "the EXR file holds deep data, several samples per pixel. Flatten it and save one scan-line or "
             "tiled image.");
     tiled_ = storage == EXR_STORAGE_TILED;
-    read_windows();
+    read_windows(has_display_window);
     if (tiled_) {
         std::uint32_t across = 0, down = 0;
         exr_tile_level_mode_t levels{};
@@ -126,7 +126,7 @@ void ExrFile::check_header() {
                             what, bytes, channels->num_channels, limit));
 }
 
-void ExrFile::read_windows() {
+void ExrFile::read_windows(bool has_display_window) {
     const auto window = [](const exr_attr_box2i_t& box) {
         return PixelWindow{box.min.x, box.min.y, box.max.x, box.max.y};
     };
@@ -135,11 +135,10 @@ void ExrFile::read_windows() {
     data_ = image_ = window(box);
     width_ = data_.width();
     height_ = data_.height();
-    // OpenEXR has a default for a missing one.
-    const exr_attribute_t* display = nullptr;
-    if (exr_get_attribute_by_name(file_, 0, "displayWindow", &display) == EXR_ERR_SUCCESS)
-        image_ = window(*display->box2i);
-    message_.clear();
+    if (has_display_window) {  // else OpenEXR returns a default
+        check(exr_get_display_window(file_, 0, &box));
+        image_ = window(box);
+    }
     check_map_sides(name_, image_.width(), image_.height());
     constexpr int overscan = 2;
     if (width_ < 1 || height_ < 1 || width_ > overscan * largest_map_side || height_ > overscan * largest_map_side)
@@ -192,9 +191,9 @@ void ExrFile::check_chunks() const {
 }  // namespace
 
 ExrCheck check_exr(const std::filesystem::path& path) {
-    const auto check = [&path](int flags, const std::string& remark = {}) {
+    const auto check = [&path](int flags, const std::string& remark = {}, bool has_display_window = true) {
         ExrFile file(path, flags);
-        file.check_header();
+        file.check_header(has_display_window);
         file.check_chunks();
         ExrCheck result{file.image(), {}};
         for (const std::string& text : {remark, file.windows_remark()})
@@ -218,7 +217,8 @@ ExrCheck check_exr(const std::filesystem::path& path) {
             return check(EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION,
                          fmt::format("The EXR header lacks the required attribute {}; {}.", name,
                                      name == std::string_view("displayWindow") ? "the map is the data window"
-                                                                               : "the map does not depend on it"));
+                                                                               : "the map does not depend on it"),
+                         name != std::string_view("displayWindow"));
     throw InputError(problem);
 }
 

@@ -113,8 +113,7 @@ TEST_CASE("a no-data value matches the nearest number of the file's type, a huge
     const TestFolder folder;
     write_exr(folder / "a.exr", exr_of(hill(35, 1235, static_cast<double>(row.stored), 3), row.pixels));
     const HeightMap map = read_height_map(folder / "a.exr", "", {row.given});
-    CHECK(map.range_low == Approx(35).margin(1));
-    CHECK((map.range_high < 1300) == row.matches);
+    CHECK((map.range_low > 34 && map.range_high < 1300) == (row.matches || std::isinf(row.stored)));
     CHECK((map.replaced.size() == 3) == (row.matches || std::isinf(row.stored)));
     const std::string text = row.matches ? "3 no-data" : "No texel has the value";
     CHECK(std::any_of(map.repairs.begin(), map.repairs.end(),
