@@ -144,13 +144,16 @@ TEST_CASE("sweep: a result is named by the content of every file that it depends
     write_all(root / "map.pgm", map);
     write_all(root / "one.toml",
               "mode = \"functional\"\n[mesh]\nfile = \"mesh.obj\"\n[map]\nfile = \"data:map.pgm\"\n");
-    write_all(root / "two.toml",
-              "mode = \"functional\"\n[mesh]\nfile = \"data:mesh.obj\"\n[map]\nfile = \"map.pgm\"\n");
+    write_all(
+        root / "two.toml",
+        "mode = \"functional\"\n[mesh]\nfile = \"data:mesh.obj\"\n[map]\nfile = \"map.pgm\"\n[displacement]\nscale = 0.3\n");
     write_all(root / "three.toml",
               "mode = \"functional\"\n[mesh]\nsource = \"run\"\nfile = \"earlier\"\n[map]\nsource = \"constant\"\n");
     REQUIRE(
-        checkout.run("build/release/testbench/commands/tessera run one.toml --set output.folder=earlier").exit_code ==
-        0);
+        checkout
+            .run(
+                "TESSERA_DATA=../shared/data build/release/testbench/commands/tessera run one.toml --set output.folder=earlier")
+            .exit_code == 0);
     const std::string three_jobs =
         "scenes = [\"one.toml\", \"two.toml\", \"three.toml\"]\nfigures = [\"mesh.triangles\"]\n"
         "[[axis]]\nkey = \"check.work\"\nvalues = [true]\n";
