@@ -98,13 +98,20 @@ class HeightFit {
         for (std::size_t t = 0; t < mesh.size(); ++t)
             for (std::size_t k = 0; k < 3; ++k)
                 triangles_[t].vertex[k] = vertex_at(mesh[t][k]);
+        std::vector<bool> covered(map.codes.size(), false);
+        std::size_t points = 0, again = 0;
         for_each_point([&](Triangle& triangle, std::size_t at, const Weights& weight) {
+            ++points;
+            again += covered[at] ? 1 : 0;
+            covered[at] = true;
             for (std::size_t k = 0; k < 3; ++k) {
                 for (std::size_t j = 0; j < 3; ++j)
                     triangle.product[k][j] += weight[k] * weight[j];
                 triangle.code[k] += weight[k] * map.codes[at];
             }
         });
+        constexpr std::size_t few = 16;  // slivers that rounding turns over cover some texels a second time
+        shares_texels_ = again > points / few;
         corners_.resize(vertices_.size());
         for (std::size_t t = 0; t < mesh.size(); ++t)
             for (std::size_t k = 0; k < 3; ++k)
@@ -258,7 +265,6 @@ class HeightFit {
         Heights mesh{map_.geometry, surface_.texel, {}};
         mesh.codes.assign(map_.codes.size(), std::numeric_limits<float>::quiet_NaN());
         for_each_point([&](const Triangle& triangle, std::size_t texel, const Weights& weight) {
-            shares_texels_ = shares_texels_ || (height == &Vertex::own && !std::isnan(mesh.codes[texel]));
             mesh.codes[texel] = static_cast<float>(height_at(triangle, weight, height));
         });
         return mesh;
@@ -289,8 +295,10 @@ class HeightFit {
     /// rounds takes them all. False if there are none.
     bool hold(const Heights& own_mesh, const Errors& own, int round) {
         // The points are samples a texel apart, between which the distance may be larger.
-        const double slack = 0.6 * std::min(surface_.texel[0], surface_.texel[1]);
-        const double near_surface = own.largest_to_surface - slack, near_mesh = own.largest_to_mesh - slack;
+        const auto near = [&](double largest) {
+            return largest - std::min(0.6 * std::min(surface_.texel[0], surface_.texel[1]), largest / 2);
+        };
+        const double near_surface = near(own.largest_to_surface), near_mesh = near(own.largest_to_mesh);
         const Heights mesh = heights_of_mesh(&Vertex::height);
         std::vector<bool> back(vertices_.size(), false);
         bool any = false;

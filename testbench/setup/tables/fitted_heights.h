@@ -13,8 +13,9 @@ namespace tessera {
 /// - A vertex keeps within the codes of its texel and of those up to two away, and its own code counts as one more grid
 ///   point: where few grid points lie around a vertex, they alone do not determine its height.
 /// - At the grid points, neither the largest distance from the mesh to the surface nor that from the surface to the mesh
-///   rises (the latter unless base triangles share texels). Where it would, the heights are moved back towards the map's own. If a root mean square would rise, of
-///   these distances or of the vertical error, the map is returned as it is.
+///   rises (the latter is not judged where base triangles share texels). Where it would, the heights are moved back
+///   towards the map's own. If a root mean square would rise, of these distances or of the vertical error, the map is
+///   returned as it is.
 ///
 /// Valid for one fixed mesh. Tables of the Rank, Bound and Curvature Tests made from the original map do not change; the
 /// Curvature Test's level 1, which reads codes, does.

@@ -123,6 +123,28 @@ TEST_CASE("A mesh that no other heights improve keeps its own") {
     CHECK(fit(map, lattice_triangles(map.geometry, 16, formats)).codes == map.codes);
 }
 
+TEST_CASE("No fitted mesh lies farther from the map than that of the map's own heights") {
+    const auto noise = [](Random& random, std::uint32_t low, std::uint32_t high) {
+        QuantisedMap map = empty_map(33, 33, AddressMode::clamp, AddressMode::clamp);
+        for (std::uint16_t& code : map.codes)
+            code = static_cast<std::uint16_t>(random.natural(low, high));
+        return map;
+    };
+    Random random(6);
+    for (int trial = 0; trial < 20; ++trial) {
+        const QuantisedMap map = noise(random, 29000, 31000);
+        const auto mesh = lattice_triangles(map.geometry, 16, formats);
+        // Texels so wide that a vertical error is the distance.
+        const QuantisedMap fitted = fit_heights(map, mesh, formats, {1e4, 1e4});
+        const auto own = error_figures(errors_of(map, map, mesh)), now = error_figures(errors_of(fitted, map, mesh));
+        CHECK(now.largest <= own.largest);
+        CHECK(now.rms <= own.rms);
+    }
+    INFO("steep noise: only the vertical error would fall");
+    const QuantisedMap steep = noise(random, 20000, 40000);
+    CHECK(fit(steep, lattice_triangles(steep.geometry, 16, formats)).codes == steep.codes);
+}
+
 TEST_CASE("Each of several meshes over the same texels counts") {
     Random random(3);
     QuantisedMap map = empty_map(33, 33, AddressMode::clamp, AddressMode::clamp);
