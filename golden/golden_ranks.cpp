@@ -69,7 +69,7 @@ class Derivation {
             return result;
         result.ranks = on_table(ranks());
         std::vector<EntryRange> bounds = wanted_bounds();
-        if (!bounds.empty()) {
+        if (source_.bound_bits > 0) {
             const std::vector<EntryRange> wanted = bounds;
             put_in_order(bounds, source_.bound_bits);
             result.highest_bound_threshold = highest_threshold(bounds, wanted);

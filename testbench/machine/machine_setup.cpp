@@ -54,23 +54,31 @@ SceneSettings scene_settings(const Job& job) {
     return settings;
 }
 
-/// Fits heights to the mesh of the unfitted map. A mesh beyond the job's limit is skipped, since its run stops there,
-/// and so is a flat one.
+/// Fits heights to the mesh that they give. A mesh beyond the job's limit is skipped, since its run stops there, and so is
+/// a flat one.
 void fit_heights_to_own_mesh(std::int64_t most_triangles, MachineSetup& setup) {
-    EmittedMesh mesh;
     const std::uint64_t most_edges = 6 * static_cast<std::uint64_t>(most_triangles);  // 3 a pass, at most 2 passes each
     const double height = std::abs(setup.height_per_code);
-    if (height == 0 || BareRecursion(setup).run(mesh, most_edges) >= most_edges)
+    bool ends = height > 0;
+    const auto mesh_of = [&](const QuantisedMap& map) {
+        setup.fitted_heights = map.codes;
+        EmittedMesh mesh;
+        ends = ends && BareRecursion(setup).run(mesh, most_edges) < most_edges;
+        std::vector<TextureTriangle> triangles;
+        triangles.reserve(mesh.triangles.size());
+        for (const EmittedTriangle& triangle : mesh.triangles) {
+            const auto& corners = triangle.corners;
+            triangles.push_back({corners[0].texture, corners[1].texture, corners[2].texture});
+        }
+        return triangles;
+    };
+    const QuantisedMap fitted = ends ? fit_heights(setup.map, mesh_of, setup.registers.formats,
+                                                   {setup.texel_size[0] / height, setup.texel_size[1] / height})
+                                     : setup.map;
+    setup.fitted_heights.clear();
+    if (!ends)
         return;
-    std::vector<TextureTriangle> triangles;
-    triangles.reserve(mesh.triangles.size());
-    for (const EmittedTriangle& triangle : mesh.triangles) {
-        const auto& corners = triangle.corners;
-        triangles.push_back({corners[0].texture, corners[1].texture, corners[2].texture});
-    }
-    setup.fitted_heights = fit_heights(setup.map, triangles, setup.registers.formats,
-                                       {setup.texel_size[0] / height, setup.texel_size[1] / height})
-                               .codes;
+    setup.fitted_heights = fitted.codes;
     if (setup.fitted_heights == setup.map.codes)
         setup.remarks.emplace_back(
             "map.heights = \"fitted\" has no effect: no other heights reduce this mesh's error without raising its "

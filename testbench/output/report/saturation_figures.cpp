@@ -33,7 +33,9 @@ std::vector<SaturationFigure> saturation_figures(const MachineSetup& setup, cons
         {"input_texture", setup.texture_clamped, "vertex",
          "base vertices with u or v outside the map on an axis that clamps, set to its border", nullptr},
         {"input_register", input.registers, "value",
-         "displacement scale and bias, directions of view and light beyond their formats", fault},
+         "displacement scale and bias, directions of view and light beyond their formats",
+         // S is twice the range of such a map, one LSB more than its register holds.
+         setup.map.bits == 1 ? "set formats.displacement_bits = 2" : fault},
         {"displaced_position", saturations.displaced_position, "value", "P' beyond the position's format", fault},
         {"normal", saturations.normal, "value", "N, T or N' beyond the normal's format", fault},
         {"screen_position", saturations.screen_position, "value", "P's beyond the screen's format",

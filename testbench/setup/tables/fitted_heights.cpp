@@ -5,12 +5,15 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <utility>
 
 namespace tessera {
 
 namespace {
 
 using Weights = std::array<double, 3>;
+
+constexpr int most_rounds = 16;
 
 std::uint32_t within(std::int64_t index, std::uint32_t size, datapath::AddressMode mode) {
     const std::int64_t count = size;
@@ -102,7 +105,8 @@ class HeightFit {
         std::size_t points = 0, again = 0;
         for_each_point([&](Triangle& triangle, std::size_t at, const Weights& weight) {
             ++points;
-            again += covered[at] ? 1 : 0;
+            if (covered[at])
+                ++again;
             covered[at] = true;
             for (std::size_t k = 0; k < 3; ++k) {
                 for (std::size_t j = 0; j < 3; ++j)
@@ -118,22 +122,37 @@ class HeightFit {
                 corners_[triangles_[t].vertex[k]].push_back({t, k});
     }
 
-    QuantisedMap fit() {
+    Heights own_mesh() { return heights_of_mesh(&Vertex::own); }
+    Errors own_errors(const Heights& own_mesh) { return errors_of(own_mesh, &Vertex::own); }
+
+    /// The heights of least squares, held against the distances of the mesh with the map's own heights.
+    QuantisedMap fit(const Heights& own_mesh, const Errors& own) {
         relax();
-        const Heights own_mesh = heights_of_mesh(&Vertex::own);
-        const Errors own = errors_of(own_mesh, &Vertex::own);
         for (int round = 0; round < most_rounds && hold(own_mesh, own, round); ++round) {
         }
-        QuantisedMap fitted = map_;
-        if (!errors_of(heights_of_mesh(&Vertex::height), &Vertex::height).exceed(own))
-            for (const Vertex& vertex : vertices_)
-                fitted.codes[vertex.texel] = static_cast<std::uint16_t>(vertex.height);
-        return fitted;
+        return fitted();
     }
 
+    /// The map `before` with heights moved back where this mesh, which it gives, would raise a largest distance.
+    QuantisedMap held(const QuantisedMap& before, const Heights& own_mesh, const Errors& own, int round) {
+        for (Vertex& vertex : vertices_)
+            vertex.height = before.codes[vertex.texel];
+        hold(own_mesh, own, round);
+        return fitted();
+    }
+
+    bool exceeds(const Errors& own) { return errors_of(heights_of_mesh(&Vertex::height), &Vertex::height).exceed(own); }
+
   private:
+    QuantisedMap fitted() const {
+        QuantisedMap map = map_;
+        for (const Vertex& vertex : vertices_)
+            map.codes[vertex.texel] = static_cast<std::uint16_t>(vertex.height);
+        return map;
+    }
+
     static constexpr std::uint32_t none = 0xffffffff;
-    static constexpr int most_sweeps = 1000, most_rounds = 16;
+    static constexpr int most_sweeps = 1000;
     static constexpr double enough = 1.0 / 16;  // codes
     static constexpr std::int64_t reach = 2;    // texels
 
@@ -337,9 +356,22 @@ class HeightFit {
 
 }  // namespace
 
-QuantisedMap fit_heights(const QuantisedMap& map, const std::vector<TextureTriangle>& mesh,
-                         const datapath::Formats& formats, const std::array<double, 2>& texel) {
-    return HeightFit(map, mesh, formats, texel).fit();
+QuantisedMap fit_heights(const QuantisedMap& map, const MeshOfMap& mesh_of, const datapath::Formats& formats,
+                         const std::array<double, 2>& texel) {
+    const std::vector<TextureTriangle> first = mesh_of(map);
+    HeightFit fit(map, first, formats, texel);
+    const Heights own_mesh = fit.own_mesh();
+    const Errors own = fit.own_errors(own_mesh);
+    QuantisedMap fitted = fit.fit(own_mesh, own);
+    for (int round = 0; round < most_rounds; ++round) {
+        const std::vector<TextureTriangle> mesh = mesh_of(fitted);
+        HeightFit next(map, mesh, formats, texel);
+        QuantisedMap held = next.held(fitted, own_mesh, own, round);
+        if (held.codes == fitted.codes)
+            return next.exceeds(own) ? map : fitted;
+        fitted = std::move(held);
+    }
+    return map;
 }
 
 }  // namespace tessera

@@ -1,11 +1,14 @@
 #pragma once
 #include <array>
+#include <functional>
 #include <vector>
 
 #include "testbench/setup/quantised_map.h"
 #include "testbench/setup/tables/grid_points.h"
 
 namespace tessera {
+
+using MeshOfMap = std::function<std::vector<TextureTriangle>(const QuantisedMap&)>;
 
 /// The map with other codes under the vertices of a mesh: those that minimise the mesh's squared vertical error over
 /// all grid points of the map, rounded to codes, under these conditions:
@@ -17,12 +20,14 @@ namespace tessera {
 ///   towards the map's own. If a root mean square would rise, of these distances or of the vertical error, the map is
 ///   returned as it is.
 ///
-/// Valid for one fixed mesh. Tables of the Rank, Bound and Curvature Tests made from the original map do not change; the
+/// Other heights may give another mesh, since the View Test and the choice of a diagonal depend on them: the conditions
+/// hold for the mesh of the returned heights, with the distances of the first mesh, that of the map's own heights, as
+/// limits. Tables of the Rank, Bound and Curvature Tests made from the original map do not change; the
 /// Curvature Test's level 1, which reads codes, does.
 ///
-/// mesh: texture coordinates of the finished triangles. Vertices in the same texel share its code. texel: its width and
-/// height, in units of a code's height.
-QuantisedMap fit_heights(const QuantisedMap& map, const std::vector<TextureTriangle>& mesh,
-                         const datapath::Formats& formats, const std::array<double, 2>& texel);
+/// mesh_of: the mesh that a map gives, as texture coordinates of the finished triangles. Vertices in the same texel share
+/// its code. texel: its width and height, in units of a code's height.
+QuantisedMap fit_heights(const QuantisedMap& map, const MeshOfMap& mesh_of, const datapath::Formats& formats,
+                         const std::array<double, 2>& texel);
 
 }  // namespace tessera

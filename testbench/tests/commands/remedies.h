@@ -198,6 +198,7 @@ inline const std::map<std::string, std::vector<Remedy>>& remedies() {
              {"run mode=timed limits.cycles_without_progress=20", "raise the limit", "run mode=timed limits.cycles_without_progress=100000"},
              {"run mode=timed hardware.queue_capacity=2 hardware.queue_overflow=stall", R"(or hardware.queue_overflow = "spill")", ""},
              {"run mode=timed hardware.queue_capacity=2 hardware.queue_overflow=stall", "set hardware.queue_capacity = 0", ""},
+             {"run formats.displacement_bits=1 tests.summed_height_threshold=2 displacement.scale=1 displacement.bias=-0.5 mesh.width=0.5 mesh.depth=0.5", "set formats.displacement_bits = 2", ""},
              {"run formats.screen_bits=13 formats.screen_fraction=2 'camera.eye=[0.2,-0.5,0.4]'", "set formats.screen_bits = 31", ""},
              {"run formats.screen_bits=13 formats.screen_fraction=2 'camera.eye=[0.2,-0.5,0.4]'", "or move camera.eye back", "run formats.screen_bits=13 formats.screen_fraction=2 'camera.eye=[0.8,-4,3]'"},
          }},

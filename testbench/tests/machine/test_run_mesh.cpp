@@ -113,11 +113,11 @@ TEST_CASE("vertices of a run that differ in base position only are merged, and c
 }
 
 TEST_CASE("a triangle without area that closes a T-vertex is kept") {
-    // (2, 0) lies on the edge from (0, 0) to (4, 0): unsplit on one side, split on the other, with the flat triangle
+    // (2, 2) lies on the edge from (0, 2) to (4, 2): unsplit on one side, split on the other, with the flat triangle
     // between.
     const BaseMesh mesh = read_back(
-        {triangle(corner(0, 0), corner(4, 0), corner(4, 4)), triangle(corner(4, 0), corner(0, 0), corner(2, 0)),
-         triangle(corner(2, 0), corner(0, 0), corner(2, -4)), triangle(corner(4, 0), corner(2, 0), corner(2, -4))});
+        {triangle(corner(0, 2), corner(4, 2), corner(4, 4)), triangle(corner(4, 2), corner(0, 2), corner(2, 2)),
+         triangle(corner(2, 2), corner(0, 2), corner(2, 0)), triangle(corner(4, 2), corner(2, 2), corner(2, 0))});
     CHECK(mesh.triangles.size() == 4);
     CHECK(mesh.dropped_degenerate == 0);
     for (const BaseVertex& vertex : mesh.vertices)

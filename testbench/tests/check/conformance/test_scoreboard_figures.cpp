@@ -42,11 +42,20 @@ TEST_CASE("the figures of a quantity equal those worked out by hand") {
     CHECK(result.mismatches == 2);
 }
 
-TEST_CASE("a run without edges passes, one with too many flips does not") {
+TEST_CASE("a run that compared nothing does not pass, nor does one with too many flips") {
     ConformanceResult result;
+    result.quantities.emplace_back();
+    result.tests.emplace_back();
     CHECK(result.flips_percent() == 0);
-    CHECK(result.passed(0));
+    CHECK(result.empty());
+    CHECK_FALSE(result.passed(100));
     result.edges = 1000;
+    CHECK(result.empty());
+    result.quantities[0].count = 1;
+    CHECK(result.empty());
+    result.tests[0].compared = 1;
+    CHECK_FALSE(result.empty());
+    CHECK(result.passed(0));
     result.flipped_edges = 5;
     CHECK(result.passed(0.5));
     CHECK_FALSE(result.passed(0.4));

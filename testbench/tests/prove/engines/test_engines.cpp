@@ -137,7 +137,7 @@ TEST_CASE("the engine of a run is chosen with a reason") {
         CHECK(chosen(setting) == "clocked: " + named + " has no schedule");
         CHECK_THAT(chosen(setting + " timing.engine=schedule"),
                    Contains("`timing.engine` = \"schedule\", but `" + std::string(key) + "` = " + value +
-                            " has no schedule: set it to ") &&
+                            " has no schedule: set " + std::string(key) + " = ") &&
                        Contains("timing.engine = \"auto\""));
     }
 }
