@@ -54,6 +54,7 @@ Device::Device(const sc_core::sc_module_name& name, const datapath::Registers& i
                pipeline_.answer_limit()),
       writing_("writing", bus, design.burst_bytes, design.machine.transport == Transport::blocking,
                pipeline_.answer_limit()),
+      burst_(design.burst_bytes),
       most_waiting_(std::max<std::uint64_t>(design.machine.queue.capacity, design.machine.queue.off_chip_triangles)) {
     registers.register_b_transport(this, &Device::b_transport);
     registers.register_transport_dbg(this, &Device::transport_dbg);
@@ -121,25 +122,25 @@ bool Device::fetch(unsigned number, const TableMemory& table, std::uint32_t sour
     if ((file_.value(offset::fetch) >> number & 1) == 0)
         return !stopped_;
     const std::uint64_t mask = (std::uint64_t{1} << bits) - 1;
-    std::vector<unsigned char> data(design_.burst_bytes);
     Fetched& fetched = fetched_[number];
     fetched = {&table, layout.base, {}};
     std::uint64_t length = 0;
     for (std::uint64_t done = 0; done < layout.bytes() && !stopped_; done += length) {
         const std::uint64_t address = file_.value(source) + done;
         length = std::min<std::uint64_t>(layout.bytes() - done, design_.burst_bytes - address % design_.burst_bytes);
-        if (!reading_.read(address, data.data(), length)) {
+        if (!reading_.read(address, burst_.data(), length)) {
             stop(DeviceError::table_read, reading_.failed_at());
             return false;
         }
         for (std::uint64_t k = 0; k < length; ++k)
-            data[k] &= static_cast<unsigned char>(mask >> 8 * ((done + k) % layout.entry_bytes));
-        if (!pipeline_.write_table(table, layout.base + done, data.data(), length)) {
+            burst_[k] &= static_cast<unsigned char>(mask >> 8 * ((done + k) % layout.entry_bytes));
+        if (!pipeline_.write_table(table, layout.base + done, burst_.data(), length)) {
             stop(DeviceError::table_memory, address);
             return false;
         }
         if (pipeline_.reads_tables_elsewhere())
-            fetched.bytes.insert(fetched.bytes.end(), data.begin(), data.begin() + static_cast<std::ptrdiff_t>(length));
+            fetched.bytes.insert(fetched.bytes.end(), burst_.begin(),
+                                 burst_.begin() + static_cast<std::ptrdiff_t>(length));
     }
     return !stopped_;
 }

@@ -118,6 +118,7 @@ class Device : public sc_core::sc_module, private tlm::tlm_analysis_if<datapath:
     RegisterFile file_;
     DmaChannel reading_;
     DmaChannel writing_;
+    std::vector<unsigned char> burst_;  // of a table, under way
 
     std::uint32_t status_ = 0;
     std::uint32_t pending_interrupts_ = 0;
