@@ -13,6 +13,7 @@
 #include "testbench/setup/base_triangles.h"
 #include "testbench/setup/formats.h"
 #include "testbench/setup/light.h"
+#include "testbench/setup/map_displacement.h"
 #include "testbench/setup/model_scale.h"
 #include "testbench/setup/table_layout.h"
 #include "testbench/setup/tables/table_extent.h"
@@ -114,6 +115,27 @@ void make_height_table(const TestSettings& tests, PreparedScene& scene) {
     }
 }
 
+/// A sentence if the surface's relief is mostly the rounding of its positions; else empty.
+std::string relief_remark(const HeightMap& map, const DisplacementSettings& settings, double scale,
+                          const datapath::Format& position) {
+    constexpr double fewest_steps = 16;
+    const auto [lowest, highest] = std::minmax_element(map.values.begin(), map.values.end());
+    const MapDisplacement displacement = MapDisplacement::from(settings, map);
+    const double low = displacement.of(static_cast<double>(*lowest));
+    const double high = displacement.of(static_cast<double>(*highest));
+    const double steps = std::ldexp(std::abs(high - low) * scale, position.fraction);
+    if (steps == 0 || steps >= fewest_steps)
+        return {};
+    const double bits = position.bits + std::ceil(std::log2(fewest_steps / steps));
+    return fmt::format(
+        "the map's displacements, {:.6g} to {:.6g} model units, span {:.2g} steps of the positions' "
+        "format, to which they are rounded: {}",
+        std::min(low, high), std::max(low, high), steps,
+        bits <= datapath::FormatLimits::position_bits.most
+            ? fmt::format("set formats.position_bits = {}", bits)
+            : "raise displacement.scale, or bring displacement.bias nearer to 0");
+}
+
 }  // namespace
 
 PreparedScene prepare_model(const SceneSettings& settings, const BaseMesh& mesh, const HeightMap& map,
@@ -137,6 +159,8 @@ PreparedScene prepare_model(const SceneSettings& settings, const BaseMesh& mesh,
     scene.texel_size = {mesh.texture_scale.mean_u / registers.map.width * scene.scale,
                         mesh.texture_scale.mean_v / registers.map.height * scene.scale};
 
+    if (std::string remark = relief_remark(map, settings.displacement, scene.scale, formats.position); !remark.empty())
+        scene.remarks.push_back(std::move(remark));
     scene.texel_spread = measure_texel_spread(mesh, scene);
     if (std::string remark = texel_spread_remark(scene.texel_spread); !remark.empty())
         scene.remarks.push_back(std::move(remark));

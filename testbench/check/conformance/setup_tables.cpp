@@ -129,14 +129,14 @@ class TableCheck {
     /// with a and shrinks with |b|; the second likewise; the third shrinks with both.
     struct NormalRange {
         NormalRange(const glm::dvec2& slope, double error) {
-            const glm::dvec2 least = glm::abs(slope) * (1 - error), most = glm::abs(slope) * (1 + error);
+            const glm::dvec2 least = glm::abs(slope) * std::max(1 - error, 0.0), most = glm::abs(slope) * (1 + error);
             const auto part = [](double along, double across) {
                 return along / std::sqrt(1 + along * along + across * across);
             };
             const auto signed_range = [&](double s, double least_along, double most_along, double least_across,
                                           double most_across, double& from, double& to) {
-                const double small = part(std::max(least_along, 0.0), most_across);
-                const double large = part(most_along, std::max(least_across, 0.0));
+                const double small = part(least_along, most_across);
+                const double large = part(most_along, least_across);
                 from = s > 0 ? -large : small;
                 to = s > 0 ? -small : large;
             };

@@ -95,6 +95,8 @@ inline const std::map<std::string, std::vector<Remedy>>& remedies() {
              {"run displacement.scale=1e8", "divide displacement.scale and displacement.bias by {}",
               "run displacement.scale=$(awk \"BEGIN { print 1e8 / $1 }\")"},
              {"run displacement.bias=-3e5 formats.position_bits=16 formats.position_fraction=8", "or set formats.position_bits = {}", ""},
+             {"run displacement.scale=2.4e-4 displacement.bias=-293 formats.position_bits=16 formats.position_fraction=8", "set formats.position_bits = {}", ""},
+             {"run displacement.scale=1e-9", "or bring displacement.bias nearer to 0", "run displacement.scale=1e-3"},
              {"run displacement.scale=1e5 formats.position_bits=16 formats.position_fraction=8",
               "divide displacement.scale and displacement.bias by {}",
               "run formats.position_bits=16 formats.position_fraction=8 displacement.scale=$(awk \"BEGIN { print 1e5 / $1 }\")"},
