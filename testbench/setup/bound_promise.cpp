@@ -46,10 +46,15 @@ std::string remedy(const BoundCondition& condition, const BoundFacts& facts) {
 
 }  // namespace
 
+std::string as_text(const BoundCondition& condition) {
+    const std::string where = condition.where;
+    return condition.setting + (where.empty() ? "" : " (" + where + ")");
+}
+
 std::string bound_condition_settings() {
     std::string text;
     for (const BoundCondition& condition : bound_conditions)
-        text += (text.empty() ? "" : ", ") + std::string(condition.setting);
+        text += (text.empty() ? "" : ", ") + as_text(condition);
     return text;
 }
 

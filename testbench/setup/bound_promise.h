@@ -32,6 +32,7 @@ struct BoundCondition {
     const char* setting;  ///< that meets it, in a job
     const char* why;      ///< what happens without it
     bool (*met)(const BoundFacts&);
+    const char* where = "";  ///< it matters; empty: everywhere
 };
 
 /// All conditions: remarks, the key's text and testbench/check/PROMISES.md are derived from this table. Besides, positions are
@@ -69,13 +70,16 @@ inline constexpr std::array bound_conditions{
                    [](const BoundFacts& f) { return !f.culling; }},
     BoundCondition{"formats.bound_bits = 16",
                    "the bounds of midpoints that depend on one another do not fit their entries",
-                   [](const BoundFacts& f) { return !f.in_picture || f.in_order; }},
+                   [](const BoundFacts& f) { return !f.in_picture || f.in_order; }, "in the picture"},
     BoundCondition{"tests.bound_threshold above the rounding of heights to codes (formats.displacement_bits)",
                    "the threshold is below the rounding of heights to codes",
                    [](const BoundFacts& f) { return f.in_picture || f.tests.bound_threshold >= f.least_threshold; }},
 };
 
-/// For the key's text: the settings, separated by commas.
+/// The setting, and where it matters.
+std::string as_text(const BoundCondition& condition);
+
+/// For the key's text: all of them, separated by commas.
 std::string bound_condition_settings();
 
 /// Whether the settings ask for a bound: the Rank Table has bounds, or the threshold was set.

@@ -118,7 +118,7 @@ TEST_CASE("bound: with all conditions met it holds, and nothing else is said") {
 TEST_CASE("bound: PROMISES.md ends with the table of conditions") {
     std::string rows;
     for (const BoundCondition& condition : bound_conditions)
-        rows += "| " + std::string(condition.setting) + " | " + condition.why + " |\n";
+        rows += "| " + as_text(condition) + " | " + condition.why + " |\n";
     expect_section("testbench/check/PROMISES.md", "| holds with | without |\n| --- | --- |\n", rows,
                    "TESSERA_WRITE_PROMISES");
 }
