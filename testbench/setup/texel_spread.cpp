@@ -38,7 +38,7 @@ class Errors {
     }
 
   private:
-    static constexpr int steps_per_degree = 100;
+    static constexpr std::size_t steps_per_degree = 100;
     std::array<double, 180 * steps_per_degree> areas_{};
     double total_ = 0, largest_ = 0;
 };
@@ -103,8 +103,8 @@ TexelSpread measure_texel_spread(const BaseMesh& mesh, const PreparedScene& scen
     spread.mean = {scale.mean_u, scale.mean_v};
     spread.smallest = {scale.smallest_u, scale.smallest_v};
     spread.largest = {scale.largest_u, scale.largest_v};
-    const std::size_t stride = 1 + mesh.triangles.size() / most_points;
-    const double each = static_cast<double>(most_points) / static_cast<double>(1 + mesh.triangles.size() / stride);
+    const std::size_t stride = 1 + mesh.triangles.size() / most_points, chosen = 1 + mesh.triangles.size() / stride;
+    const double each = static_cast<double>(most_points) / static_cast<double>(chosen);
     const int parts = std::max(1, static_cast<int>(std::sqrt(each)));
     const glm::dvec2 texels(scene.registers.map.width, scene.registers.map.height);
     Errors errors;

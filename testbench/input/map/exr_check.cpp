@@ -140,7 +140,7 @@ void ExrFile::read_windows(bool has_display_window) {
         image_ = window(box);
     }
     check_map_sides(name_, image_.width(), image_.height());
-    constexpr int overscan = 2;
+    constexpr std::int64_t overscan = 2;
     if (width_ < 1 || height_ < 1 || width_ > overscan * largest_map_side || height_ > overscan * largest_map_side)
         refuse(
             fmt::format("the EXR file's data window is {}; each side must be 1 to {}. Save it cropped to its display "

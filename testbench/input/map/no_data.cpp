@@ -59,6 +59,7 @@ std::string in_source(float value, const HeightMap& map) {
 
 std::optional<std::array<float, 2>> replace_missing(HeightMap& map, const std::vector<double>& no_data) {
     std::vector<NoData> wanted;
+    wanted.reserve(no_data.size());
     for (const double value : no_data)
         wanted.emplace_back(map, value);
     std::vector<std::int64_t> counts(first_no_data + no_data.size(), 0);
@@ -189,6 +190,7 @@ void suspect_no_data(HeightMap& map, const std::vector<double>& given) {
     if (suspects.empty())
         return;
     std::vector<std::string> values;
+    values.reserve(given.size() + suspects.size());
     for (const double value : given)
         values.push_back(fmt::format("{}", value));
     for (const float value : suspects)

@@ -56,7 +56,8 @@ struct Heights {
     }
 
     double distance(std::size_t at, double height) const {
-        return distance(static_cast<double>(at % map.width), static_cast<double>(at / map.width), height);
+        const std::size_t row = at / map.width;
+        return distance(static_cast<double>(at % map.width), static_cast<double>(row), height);
     }
 
   private:

@@ -56,8 +56,8 @@ TEST_CASE("timed run: twice the key that the bottleneck names takes fewer cycles
              none({"timing.summed_height_table_cache_bytes=256", "timing.summed_height_table_ports=4"}),
              none({"hardware.height_test=curvature"}),
              none({"hardware.design=modern", "hardware.machines=8"})}) {
-        const auto run = [&](const Arguments& more) {
-            succeed(timed_run("out", unchecked + settings + more), here.path());
+        const auto run = [&, &its = settings](const Arguments& more) {
+            succeed(timed_run("out", unchecked + its + more), here.path());
             return RunFolder(here.path() / "out");
         };
         const RunFolder once = run({});

@@ -302,8 +302,13 @@ TEST_CASE("edge: thresholds as the viewer sees them equal those worked out by ha
     i.texture = {0.5, 0.5};
     j.texture = {2.5, 0.5};
     const auto asks = [&](std::uint16_t rank, std::uint16_t bound, std::uint8_t radius) {
-        map.set_ranks({8, 8, std::vector<std::uint16_t>(64, rank), std::vector<std::uint16_t>(64, bound),
-                       std::vector<std::uint8_t>(64, radius), 0});
+        map.set_ranks({8,
+                       8,
+                       std::vector<std::uint16_t>(64, rank),
+                       std::vector<std::uint16_t>(64, bound),
+                       std::vector<std::uint8_t>(64, radius),
+                       0,
+                       {}});
         return evaluate_edge(complete_base_vertex(i, map, parameters), complete_base_vertex(j, map, parameters), map,
                              parameters)
             .summed_height_test;

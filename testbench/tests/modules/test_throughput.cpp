@@ -328,16 +328,16 @@ TEST_CASE("mean occupancy is throughput times latency in units that are never bl
         REQUIRE(unit.activity().cycles_in(State::blocked) == 0);
         CHECK(unit.activity().item_cycles() == item_cycles);
     };
-    const std::uint64_t edges = 3 * passes, vertices = 3 * base, normals = parts - edges - vertices;
+    const std::uint64_t edges = 3 * passes, base_vertices = 3 * base, normals = parts - edges - base_vertices;
     expect(p.transform, 20 * parts);
     expect(p.calculate_new_p, parts);
     expect(p.lighting, 4 * finished);
-    expect(p.displace_vertex, (1 + 6) * (edges + vertices) + 6 * normals);  // normals read nothing
-    expect(p.tessellation_tests[0].normal_test, (1 + 9) * (edges + vertices));
+    expect(p.displace_vertex, (1 + 6) * (edges + base_vertices) + 6 * normals);  // normals read nothing
+    expect(p.tessellation_tests[0].normal_test, (1 + 9) * (edges + base_vertices));
     expect(p.tessellation_tests[0].view_test, edges);
     expect(p.tessellation_tests[0].tex_coord_test, edges);
-    expect(p.displacement_map, edges + vertices);
-    expect(p.normal_map, edges + vertices);
+    expect(p.displacement_map, edges + base_vertices);
+    expect(p.normal_map, edges + base_vertices);
 }
 
 TEST_CASE("a second frame takes the same number of cycles") {

@@ -88,7 +88,7 @@ TEST_CASE("a no-data value matches the nearest number of the file's type, a huge
         double given;
         bool matches;
     };
-    const float infinity = std::numeric_limits<float>::infinity();
+    const float endless = std::numeric_limits<float>::infinity();
     const Row row = GENERATE_COPY(values<Row>({
         {"exact", Pixels::float_, -32767, -32767, true},
         {"a neighbour of it", Pixels::float_, -32767, -32766.99, false},
@@ -98,13 +98,13 @@ TEST_CASE("a no-data value matches the nearest number of the file's type, a huge
         {"float's lowest, as it is usually printed", Pixels::float_, std::numeric_limits<float>::lowest(), -3.4e38,
          true},
         {"of the other sign", Pixels::float_, std::numeric_limits<float>::lowest(), 3.4e38, false},
-        {"double's lowest, which a float file has as -infinity", Pixels::float_, -infinity, -1.7976931348623157e308,
+        {"double's lowest, which a float file has as -infinity", Pixels::float_, -endless, -1.7976931348623157e308,
          true},
         {"a decimal fraction", Pixels::float_, 0.1F, 0.1, true},
         {"1e20", Pixels::float_, 1e20F, 1e20, true},
         {"1e20, nearly", Pixels::float_, 1e20F, 1.001e20, false},
         {"half has no -9999", Pixels::half, -9999, -9999, true},
-        {"half has no 1e20", Pixels::half, infinity, 1e20, true},
+        {"half has no 1e20", Pixels::half, endless, 1e20, true},
         {"half's highest", Pixels::half, 65504, 65504, true},
         {"half's neighbour", Pixels::half, -9999, -9992, false},
         {"uint's highest", Pixels::uint, 4294967040.F, 4294967040.0, true},
