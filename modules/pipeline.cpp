@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "modules/datapath/pack_triangle.h"
+#include "modules/timing/design_check.h"
 
 namespace tessera {
 
@@ -43,16 +44,14 @@ UnitFactory& standard_units() {
     return factory;
 }
 
-void check(const std::string& name, const datapath::Registers& registers, const Design& design) {
-    if ((design.work == Work::family) != registers.formats.families)
-        SC_REPORT_ERROR("tessera/pipeline",
-                        (name + ": Design::work and Formats::families disagree: set both, or neither").c_str());
-    const bool lanes = design.work == Work::family && design.test_order == TestOrder::cheap_first;
-    if (!lanes && (design.edge_lanes != 1 || design.normal_tests != 1))
-        SC_REPORT_ERROR("tessera/pipeline",
-                        (name + ": Design::edge_lanes and normal_tests other than 1 need Work::family " +
-                         "and TestOrder::cheap_first")
-                            .c_str());
+/// Before anything is built from it: SC_ERROR if the design, or the formats, cannot work.
+const Design& checked(const Design& design, const datapath::Registers& registers, const char* name) {
+    std::string faults = design_faults(design, registers.formats);
+    if (!faults.empty()) {
+        faults.pop_back();
+        SC_REPORT_ERROR("tessera/pipeline", (std::string(name) + ": " + faults).c_str());
+    }
+    return design;
 }
 
 }  // namespace
@@ -61,8 +60,9 @@ Pipeline::Pipeline(const sc_core::sc_module_name& name, const datapath::Register
                    UnitFactory* factory)
     : sc_module(name),
       clock("clock",
-            design.clock != nullptr ? design.clock->period()
-                                    : clock_period(this->name(), design.timing.cycle_picoseconds),
+            checked(design, registers, this->name()).clock != nullptr
+                ? design.clock->period()
+                : clock_period(this->name(), design.timing.cycle_picoseconds),
             design.clock != nullptr ? first_rising_edge(*design.clock) : sc_core::SC_ZERO_TIME),
       made_(make({clock, registers, design}, factory == nullptr ? standard_units() : *factory)),
       tessellation_tests("tessellation_tests"),
@@ -90,7 +90,6 @@ Pipeline::Pipeline(const sc_core::sc_module_name& name, const datapath::Register
       transport_(design.transport),
       conducted_(design.conducted),
       random_stalls_(design.timing.stalls.per_mille > 0) {
-    check(this->name(), registers, design);
     UnitFactory& units = factory == nullptr ? standard_units() : *factory;
     tessellation_tests.init(design.tests_units, [&](const char* unit_name, std::size_t number) {
         return new TessellationTests(unit_name, {clock, registers, design}, units, static_cast<unsigned>(number));

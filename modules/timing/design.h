@@ -1,39 +1,22 @@
 #pragma once
 #include <algorithm>
-#include <cstddef>
 #include <cstdint>
 
 #include "modules/datapath/parameters.h"
 #include "modules/timing/cycle_scheduler.h"
-#include "modules/timing/design_choices.h"
+#include "modules/timing/design_options.h"
 #include "modules/timing/timing.h"
 
 namespace tessera {
 
-struct QueueDesign {
-    TriangleOrder order = TriangleOrder::fifo;
-    std::size_t watermark = 1;  ///< at least 1
-    std::size_t capacity = 0;   ///< triangles on chip; 0: unbounded
-    QueueOverflow overflow = QueueOverflow::spill;
-    std::uint64_t off_chip_triangles = std::uint64_t{1} << 20;  ///< places in off-chip memory
-};
-
 /// The parameters fixed when the machine is built, as opposed to those set before a run (datapath::Registers).
-struct Design {
+struct Design : DesignOptions {
     Transport transport = Transport::blocking;
     Timing timing;
     /// The platform's clock, at whose rising edges cycles begin. Null: every timing.cycle_picoseconds, from time 0.
     const sc_core::sc_clock* clock = nullptr;
-    QueueDesign queue;
-    Work work = Work::triangle;
-    unsigned tests_units = 1;  ///< Tessellation Tests units: 1 or 3
-    TestOrder test_order = TestOrder::parallel;
-    unsigned edge_lanes = 1;    ///< family design, tests cheapest first: parallel lanes of cheap tests
-    unsigned normal_tests = 1;  ///< likewise: Normal Tests that share the lanes' edges
-    unsigned transform_pipelines = 1;
     /// In functional mode a Conductor (modules/conductor.h) sends the triangles of the host and of the queue.
     bool conducted = false;
-    bool direct_memory = true;  ///< units read memories through DMI in functional mode
     /// Cycles for which a memory that a UnitFactory has joined, or the device's bus, may leave a request unanswered
     /// (sockets/answer_watch.h); 0: no limit.
     unsigned answer_cycles = 1'000'000;

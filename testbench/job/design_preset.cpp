@@ -14,8 +14,8 @@ void apply_design(Job& job) {
     h.edge_lanes = modern ? 3 : hardware.edge_lanes;
     h.normal_tests = hardware.normal_tests;
     h.tests_units = hardware.tests_units;
-    h.queue_order = modern ? QueueOrder::lifo : hardware.queue_order;
-    h.queue_capacity = modern ? 256 : hardware.queue_capacity;
+    h.queue.order = modern ? TriangleOrder::lifo : hardware.queue.order;
+    h.queue.capacity = modern ? 256 : hardware.queue.capacity;
     Timing& t = job.timing;
     t.pass_or_tessellate.buffer = modern ? 96 : timing.pass_or_tessellate.buffer;
     t.edges_in_sequence = modern ? 128 : timing.edges_in_sequence;

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "modules/timing/design_choices.h"
+#include "modules/timing/design_options.h"
 #include "modules/timing/timing.h"
 #include "testbench/setup/scene_settings.h"
 
@@ -19,10 +19,8 @@ using Addressing = datapath::AddressMode;
 using datapath::HeightTest;
 using datapath::MapFilter;
 using datapath::Triangulation;
-using QueueOrder = TriangleOrder;
 enum class Culling { none, back };
 using datapath::SummedHeightUnit;
-using Overflow = QueueOverflow;
 enum class Mode { functional, timed };
 /// The engine that counts the cycles of timed mode.
 enum class Engine { any, schedule, clocked };
@@ -41,7 +39,7 @@ struct MapRange {
 };
 
 /// One run of tessera, as described by a job file. Every key's unit, default, range and description are declared once,
-/// in job_keys.cpp and modules/timing/timing_keys.h; the defaults are the initialisers below and form the default job
+/// in job_keys.cpp and modules/timing/design_keys.h; the defaults are the initialisers below and form the default job
 /// (the half donut on the plane of 18 triangles).
 struct Job {
     struct Mesh {
@@ -95,27 +93,15 @@ struct Job {
     using Formats = FormatSettings;
     Formats formats;
 
-    struct Hardware {
+    struct Hardware : DesignOptions {
         DesignPreset design = DesignPreset::paper;  // sets the keys of design_preset.h
         Triangulation triangulation = Triangulation::shorter;
         HeightTest height_test = HeightTest::summed_height;
         Culling culling = Culling::none;
-        QueueOrder queue_order = QueueOrder::fifo;
-        std::int64_t queue_watermark = 1;           // host triangles are taken while fewer than this many wait
-        std::int64_t queue_capacity = 0;            // triangles on chip; 0: unbounded
-        std::int64_t off_chip_triangles = 1 << 20;  // most triangles spilled at a time
-        Overflow queue_overflow = Overflow::spill;
-        std::int64_t tests_units = 1;  // Tessellation Tests units: 1 or 3
-        Work work = Work::triangle;    // unit of work in the loop
-        TestOrder test_order = TestOrder::parallel;
         bool final_edges = false;         // final edges are not tested again
         bool one_texel_from_map = false;  // the sum over one texel is its code
         MapFilter displacement_filter = MapFilter::nearest;
-        std::int64_t edge_lanes = 1;    // with families: lanes of cheap tests
-        std::int64_t normal_tests = 1;  // likewise: shared by the lanes
-        std::int64_t transform_pipelines = 1;
         std::int64_t machines = 1;                      // side by side
-        bool direct_memory = true;                      // functional mode reads memories through DMI
         std::array<double, 3> light{0.3, -0.4, 0.866};  // direction towards the light, world space
         double ambient = 0.2;
     } hardware;

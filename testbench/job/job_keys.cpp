@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "modules/datapath/format.h"
-#include "modules/timing/timing_keys.h"
+#include "modules/timing/design_keys.h"
 #include "testbench/job/job_choices.h"
 #include "testbench/job/toml_text.h"
 #include "testbench/setup/bound_promise.h"
@@ -115,8 +115,8 @@ class TableWriter {
 
     /// One of an enumeration's values: `member(group)` is a reference to it.
     template <typename Enum, typename Member>
-    void add_choice(const std::string& leaf, Member member, const std::string& description) const {
-        Key& key = push(leaf, KeyKind::choice, "-", description);
+    void add_choice(const DesignName& name, Member member, const std::string& description) const {
+        Key& key = push(name.key, KeyKind::choice, "-", description);
         key.choices = names_of<Enum>();
         key.get = [select = select_, member](const Job& job) { return std::string(name_of(member(select(job)))); };
         key.set = [select = select_, member](Job& job, const JobValue& value) {
@@ -126,11 +126,21 @@ class TableWriter {
         };
     }
 
+    /// A flag deep within the group.
+    template <typename Member>
+    void add_switch(const DesignName& name, Member member, const std::string& description) const {
+        Key& key = push(name.key, KeyKind::flag, "-", description);
+        key.get = [select = select_, member](const Job& job) { return member(select(job)); };
+        key.set = [select = select_, member](Job& job, const JobValue& value) {
+            member(select(job)) = std::get<bool>(value);
+        };
+    }
+
     /// An unsigned or std::uint64_t number deep within the group: `member(group)` is a reference to it.
     template <typename Member>
-    void add_number(const std::string& leaf, Member member, const char* unit, TimingRange range,
+    void add_number(const DesignName& name, Member member, const char* unit, DesignRange range,
                     const std::string& description) const {
-        Key& key = push(leaf, KeyKind::integer, unit, description);
+        Key& key = push(name.key, KeyKind::integer, unit, description);
         key.range = between(range.least, range.most);
         key.get = [select = select_, member](const Job& job) { return static_cast<std::int64_t>(member(select(job))); };
         key.set = [select = select_, member](Job& job, const JobValue& value) {
@@ -264,7 +274,7 @@ std::vector<KeyTable> declare_keys() {
         key.add("summed_height_unit", &Tests::summed_height_unit, "Quantity that the threshold is compared with: sums over rectangles, or the second difference of their mean heights (area)");
         key.add("rank_view", &Tests::rank_view, "With hardware.height_test = \"rank\": the error that its thresholds measure. none: on the surface; per_point, per_pixel: in the picture, in pixels, so that triangles are smaller nearer to camera.eye, with each point of the map, or each pixel, weighted equally. The latter two need hardware.test_order = \"cheap_first\"");
         key.add("rank_threshold", &Tests::rank_threshold, "full scale times the root of a texel; pixels times the root of a texel (per_point), of a pixel (per_pixel)", between(0, 1e9), "With hardware.height_test = \"rank\" and formats.rank_bits: an edge requests a split if the square root of the squared error that its midpoint removes, per added triangle, is larger");
-        key.add("bound_threshold", &Tests::bound_threshold, "full scale; pixels (per_point, per_pixel)", between(0, 1e6), "With hardware.height_test = \"rank\" and formats.bound_bits: largest distance of a point of the map from the mesh, along the normal, or as it appears in the picture. Heights are the map's, before rounding; positions are rounded besides. Asked for if the Rank Table has bounds, or this key is set; a run then measures it at every texel's centre, and says that it holds, or what to set. It holds with: " + bound_condition_settings());
+        key.add("bound_threshold", &Tests::bound_threshold, "full scale; pixels (per_point, per_pixel)", between(0, 1e6), "With hardware.height_test = \"rank\" and formats.bound_bits: largest distance of a point of the map from the mesh, along the normal, or as it appears in the picture. Heights are the map's, before rounding; positions are rounded besides. Asked for if the Rank Table has bounds, or this key has another value than its default; a run then measures it at every texel's centre, and says that it holds, or what to set. It holds with: " + bound_condition_settings());
         key.add("curvature_threshold", &Tests::curvature_threshold, "full scale times texels", between(0, 1e9), "With hardware.height_test = \"curvature\": an edge requests a split if the map deviates from its chord by more than the threshold divided by the edge's length in texels, rounded up to a power of two");
         key.add("mipmap_filter", &Tests::mipmap_filter, "With hardware.height_test = \"mipmap\": height of a block of texels, their mean or their maximum");
         key.add("mipmap_threshold", &Tests::mipmap_threshold, "full scale", between(0, 1), "With hardware.height_test = \"mipmap\": an edge requests a split if the filtered height at its midpoint deviates by more from the mean of those at its ends");
@@ -302,22 +312,11 @@ std::vector<KeyTable> declare_keys() {
         key.add("triangulation", &Hardware::triangulation, "Diagonal when two edges split: the shorter one, or always the first or the second; greatest_rank, with hardware.height_test = \"rank\": only the edge of greatest rank is split, of those that request it");
         key.add("height_test", &Hardware::height_test, "summed_height: the paper's Summed Height Test. In its place: rank: the host ranks the points of the base mesh's lattice, and an edge requests a split if the rank of its midpoint exceeds the threshold; curvature, for any base mesh: the host fits quadratics to the map, and an edge requests a split if they deviate from its chord; mipmap, the alternative that the paper discusses: compares heights of the map filtered to the edge's length");
         key.add("culling", &Hardware::culling, "Back-face culling of finished triangles");
-        key.add("queue_order", &Hardware::queue_order, "Triangle Queue: first in first out, or last in first out");
-        key.add("queue_watermark", &Hardware::queue_watermark, "triangles", between(1, any_count), "Get Triangle accepts triangles from the host while fewer than this many wait in the queue");
-        key.add("queue_capacity", &Hardware::queue_capacity, "triangles", between(0, any_count), "Timed mode: on-chip capacity of the Triangle Queue; 0: unbounded");
-        key.add("off_chip_triangles", &Hardware::off_chip_triangles, "triangles", between(1, 1000000000), "Timed mode: capacity of off-chip memory for spilled triangles; a run that needs more ends with exit code 4");
-        key.add("queue_overflow", &Hardware::queue_overflow, "Timed mode: a full queue spills to off-chip memory, stalls the pipeline, or ends the run with exit code 4");
-        key.add("tests_units", &Hardware::tests_units, "-", between(1, 3), "Timed mode: Tessellation Tests units, 1 or 3 (one for each edge of a triangle)");
-        key.add("work", &Hardware::work, "Contents of the Triangle Queue. triangle: every child (the paper's); family: only triangles that are known to split, whose children are then tested together; the mesh is the same");
-        key.add("test_order", &Hardware::test_order, "parallel: all tests of an edge at once (the paper's); cheap_first: first the tests that read no table, the others only if the decision still depends on them; the mesh is the same");
         key.add("final_edges", &Hardware::final_edges, "An edge that was tested in a parent and not split is not tested again in its children; off: the paper's; the mesh is the same");
         key.add("one_texel_from_map", &Hardware::one_texel_from_map, "Vertices carry their displacement codes; for rectangles of one texel, the Summed Height Test uses these and one read of the displacement map instead of the Summed Height Table; off: the paper's; the mesh is the same");
         key.add("displacement_filter", &Hardware::displacement_filter, "Filter of the displacement map and the normal map. nearest: the texel under a vertex (the paper's); bilinear: between the four texels around it, which gives another surface and takes four reads instead of one");
-        key.add("edge_lanes", &Hardware::edge_lanes, "-", between(1, 9), "Timed mode, with work = \"family\" and test_order = \"cheap_first\": lanes of the cheap tests, each of one edge per cycle");
-        key.add("normal_tests", &Hardware::normal_tests, "-", between(1, 9), "Timed mode, likewise: Normal Tests, shared by the lanes");
-        key.add("transform_pipelines", &Hardware::transform_pipelines, "-", between(1, 16), "Timed mode: Transform pipelines, used in turn");
+        declare_option_keys(key);
         key.add("machines", &Hardware::machines, "-", between(1, 16), "Number of complete machines, each with its own tables and off-chip memory; base triangle k goes to machine k modulo their number");
-        key.add("direct_memory", &Hardware::direct_memory, "Functional mode reads the memories through DMI");
         key.add("light", &Hardware::light, "-", coordinate_range, "Direction towards the light, world space, of any length");
         key.add("ambient", &Hardware::ambient, "full scale", between(0, 1), "Ambient light");
     });

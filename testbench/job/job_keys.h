@@ -60,7 +60,7 @@ struct KeyTable {
     std::vector<Key> keys;
 };
 
-/// All keys, each declared once, in job_keys.cpp and modules/timing/timing_keys.h. Reading, --set, dumping and the key
+/// All keys, each declared once, in job_keys.cpp and modules/timing/design_keys.h. Reading, --set, dumping and the key
 /// reference are derived from them.
 const std::vector<KeyTable>& job_tables();
 

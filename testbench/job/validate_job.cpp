@@ -7,7 +7,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <vector>
 
+#include "modules/timing/design_keys.h"
+#include "modules/timing/design_rules.h"
 #include "testbench/job/job_choices.h"
 #include "testbench/job/job_keys.h"
 #include "testbench/job/toml_text.h"
@@ -128,30 +131,24 @@ void check_hardware(const Job::Hardware& hardware, Faults& faults) {
                   "`hardware.triangulation` = \"greatest_rank\", but `hardware.height_test` = \"{}\" has no ranks: set "
                   "hardware.height_test = \"rank\"",
                   name_of(hardware.height_test));
-    faults.unless(hardware.tests_units != 2,
-                  "`hardware.tests_units` = 2: a design has 1 Tessellation Tests unit, or 3, one for each edge");
-    faults.unless(hardware.tests_units == 1 || hardware.work == Work::triangle,
-                  "`hardware.tests_units` = {}, but `hardware.work` = \"family\" has one Tessellation Tests unit: set "
-                  "hardware.tests_units = 1; hardware.edge_lanes and hardware.normal_tests replace it",
-                  hardware.tests_units);
-    const bool lanes = hardware.work == Work::family && hardware.test_order == TestOrder::cheap_first;
-    for (const auto& [key, value] :
-         {std::pair{"edge_lanes", hardware.edge_lanes}, {"normal_tests", hardware.normal_tests}})
-        faults.unless(
-            value == 1 || lanes,
-            "`hardware.{}` = {}: other designs have one: set hardware.work = \"family\" and hardware.test_order = "
-            "\"cheap_first\"",
-            key, value);
 }
 
-void check_timing(const Timing& timing, Faults& faults) {
-    const MemoryTiming& table = timing.summed_height_table;
-    faults.unless(
-        table.interleave == Interleave::entry || (table.banks & (table.banks - 1)) == 0,
-        "`timing.summed_height_table_banks` = {}, but `timing.summed_height_table_interleave` = \"xor\" needs "
-        "a power of two: set timing.summed_height_table_banks = {}, or timing.summed_height_table_interleave = "
-        "\"entry\"",
-        table.banks, power_of_two_below(table.banks));
+/// What Pipeline refuses as well.
+void check_design(const Job& job, Faults& faults) {
+    const auto key_of = [](const std::string& member) -> const Key& {
+        const std::string leaf = DesignName(member).key;
+        const Key* const key = find_key("hardware." + leaf);
+        return key != nullptr ? *key : *find_key("timing." + leaf);
+    };
+    for (const DesignRule* const rule : broken_rules(job.hardware, job.timing)) {
+        const Key& broken = key_of(rule->member);
+        const std::vector<DesignSetting> to = rule->remedy(job.hardware, job.timing);
+        const std::string first = key_of(to.front().member).name, last = key_of(to.back().member).name;
+        faults.unless(false, "`{}` = {}: {}: {}", broken.name, toml_value(broken.get(job)), rule->why,
+                      to.size() == 1
+                          ? fmt::format("set {} = {}", first, to.front().value)
+                          : fmt::format("set {} = {} and {} = {}", first, to.front().value, last, to.back().value));
+    }
 }
 
 void check_traces(const Job& job, Faults& faults) {
@@ -182,7 +179,7 @@ void validate(const Job& job) {
     check_light(job.hardware, faults);
     check_hardware(job.hardware, faults);
     check_rank_view(job, faults);
-    check_timing(job.timing, faults);
+    check_design(job, faults);
     check_traces(job, faults);
     faults.raise();
 }

@@ -18,20 +18,9 @@ namespace {
 
 Design make_design(const Job& job) {
     Design design;
+    static_cast<DesignOptions&>(design) = job.hardware;
     design.transport = job.mode == Mode::timed ? Transport::non_blocking : Transport::blocking;
     design.timing = job.timing;
-    design.queue.order = job.hardware.queue_order;
-    design.queue.watermark = static_cast<std::size_t>(job.hardware.queue_watermark);
-    design.queue.capacity = static_cast<std::size_t>(job.hardware.queue_capacity);
-    design.queue.off_chip_triangles = static_cast<std::uint64_t>(job.hardware.off_chip_triangles);
-    design.queue.overflow = job.hardware.queue_overflow;
-    design.tests_units = static_cast<unsigned>(job.hardware.tests_units);
-    design.transform_pipelines = static_cast<unsigned>(job.hardware.transform_pipelines);
-    design.work = job.hardware.work;
-    design.test_order = job.hardware.test_order;
-    design.edge_lanes = static_cast<unsigned>(job.hardware.edge_lanes);
-    design.normal_tests = static_cast<unsigned>(job.hardware.normal_tests);
-    design.direct_memory = job.hardware.direct_memory;
     return design;
 }
 
@@ -85,20 +74,26 @@ void fit_heights_to_own_mesh(std::int64_t most_triangles, MachineSetup& setup) {
             "largest distance from the surface; the map's own are used");
 }
 
-/// A sentence for the report if the map's values are so few of those that displacement.scale spans that the surface is
-/// nearly flat (metres in 16 bits); else empty.
+/// A sentence for the report if the map's values are all one, or so few of those that displacement.scale spans that the
+/// surface is nearly flat (metres in 16 bits), or lie far beyond them; else empty.
 std::string unused_range_remark(const MapRange& range, const HeightMap& map) {
     constexpr double least_part = 1.0 / 8;
     const auto [lowest, highest] = std::minmax_element(map.values.begin(), map.values.end());
     const double low = static_cast<double>(*lowest), high = static_cast<double>(*highest);
-    const double part = (high - low) / (map.span_high - map.span_low);
-    if (range.kind == MapRange::Kind::data || high == low || part >= least_part)
+    const double part = (high - low) / (std::max(high, map.span_high) - std::min(low, map.span_low));
+    if (high == low)
+        return fmt::format("every texel of the map holds {:.6g}: the surface has no relief", low * map.source_units);
+    if (range.kind == MapRange::Kind::data || part >= least_part)
         return {};
-    return fmt::format(
-        "the map's values, {:.6g} to {:.6g}, are {:.2g} % of the {:.6g} to {:.6g} that displacement.scale "
-        "spans: set map.range = \"data\" to span only values that occur",
-        low * map.source_units, high * map.source_units, 100 * part, map.span_low * map.source_units,
-        map.span_high * map.source_units);
+    const std::string spans = fmt::format(
+        "the {:.6g} to {:.6g} that displacement.scale spans: set map.range = \"data\" to "
+        "span only values that occur",
+        map.span_low * map.source_units, map.span_high * map.source_units);
+    const std::string values =
+        fmt::format("the map's values, {:.6g} to {:.6g}, ", low * map.source_units, high * map.source_units);
+    if (low >= map.span_low && high <= map.span_high)
+        return fmt::format("{}are {:.2g} % of {}", values, 100 * part, spans);
+    return fmt::format("{}lie beyond {}", values, spans);
 }
 
 }  // namespace
@@ -111,7 +106,8 @@ MachineSetup make_setup(const Job& job, const BaseMesh& mesh, const HeightMap& m
         prepare_model(settings, mesh, map, job.map.source == MapSource::file ? job.map.file : "map");
     setup.model_scale = {setup.scale, {setup.centre[0], setup.centre[1], setup.centre[2]}};
     setup.summed_height_bits_chosen = job.formats.summed_height_bits == 0;
-    if (std::string remark = unused_range_remark(job.map.range, map); !remark.empty())
+    if (std::string remark = unused_range_remark(job.map.range, map);
+        !remark.empty() && job.map.source != MapSource::constant)
         setup.remarks.insert(setup.remarks.begin(), std::move(remark));
     setup.design = make_design(job);
     setup.machines = static_cast<unsigned>(job.hardware.machines);

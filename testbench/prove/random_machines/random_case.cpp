@@ -127,7 +127,7 @@ std::string RandomCase::summary() const {
                        job.formats.normal_bits, job.formats.normal_fraction, job.formats.texture_integer,
                        job.formats.texture_fraction, job.formats.screen_bits, job.formats.screen_fraction,
                        job.hardware.tests_units == 3 ? "3 tests units" : "1 tests unit",
-                       job.hardware.queue_order == QueueOrder::lifo ? ", lifo" : ", fifo");
+                       job.hardware.queue.order == TriangleOrder::lifo ? ", lifo" : ", fifo");
 }
 
 BaseMesh RandomCase::base_mesh() const {
@@ -160,7 +160,7 @@ RandomCase make_random_case(std::uint64_t seed) {
             settle(random, made);
             // Without a Generation Test a generation may not fit the fields of a spilled triangle, which is an error.
             if (!made.job.tests.generation)
-                made.job.hardware.queue_capacity = 0;
+                made.job.hardware.queue.capacity = 0;
             choose_evaluations(random, made.job);
             return made;
         } catch (const InputError&) {

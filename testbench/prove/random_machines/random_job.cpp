@@ -72,13 +72,13 @@ void choose_camera(Random& random, const JobContext& context, const Job::Formats
 void choose_hardware(Random& random, Job::Hardware& hardware) {
     hardware.triangulation = random.one_of({Triangulation::shorter, Triangulation::first, Triangulation::second});
     hardware.culling = random.chance(30) ? Culling::back : Culling::none;
-    hardware.queue_order = random.coin() ? QueueOrder::fifo : QueueOrder::lifo;
-    hardware.queue_watermark = random.one_of<std::int64_t>({1, 1, 3, 20, 1000});
-    hardware.queue_capacity = random.one_of<std::int64_t>({0, 0, 1, 2, 7, 64, 500});
-    hardware.queue_overflow = Overflow::spill;  // with other settings, a run with an arbitrary queue may fail
-    hardware.off_chip_triangles = 100000;
+    hardware.queue.order = random.coin() ? TriangleOrder::fifo : TriangleOrder::lifo;
+    hardware.queue.watermark = random.one_of<std::size_t>({1, 1, 3, 20, 1000});
+    hardware.queue.capacity = random.one_of<std::size_t>({0, 0, 1, 2, 7, 64, 500});
+    hardware.queue.overflow = QueueOverflow::spill;  // with other settings, a run with an arbitrary queue may fail
+    hardware.queue.off_chip_triangles = 100000;
     hardware.tests_units = random.coin() ? 1 : 3;
-    hardware.transform_pipelines = random.one_of<std::int64_t>({1, 1, 2, 5});
+    hardware.transform_pipelines = random.one_of<unsigned>({1, 1, 2, 5});
     hardware.direct_memory = random.chance(80);
     hardware.light = {random.real(-1, 1), random.real(-1, 1), random.real(0.1, 1)};
     hardware.ambient = random.real(0, 1);
@@ -170,8 +170,8 @@ void choose_evaluations(Random& random, Job& job) {
     if (job.hardware.work == Work::family) {
         job.hardware.tests_units = 1;
         if (job.hardware.test_order == TestOrder::cheap_first) {
-            job.hardware.edge_lanes = random.integer(1, 9);
-            job.hardware.normal_tests = random.integer(1, 3);
+            job.hardware.edge_lanes = static_cast<unsigned>(random.integer(1, 9));
+            job.hardware.normal_tests = static_cast<unsigned>(random.integer(1, 3));
         }
     }
     job.timing.edges_in_sequence = random.natural(1, 40);

@@ -241,7 +241,7 @@ TEST_CASE("summary: a timed run of one triangle is summarised") {
 // Two base triangles with four children each, and two places: at least one of the second's children is spilled.
 TEST_CASE("summary: spilled triangles are reported") {
     Job job = full_split_job(1, 1);
-    job.hardware.queue_capacity = 2;
+    job.hardware.queue.capacity = 2;
     TimedRun simulation(setup_of(job));
     const TriangleQueue& queue = simulation.pipeline.triangle_queue;
     REQUIRE(queue.spilled() > 0);

@@ -79,7 +79,9 @@ TEST_CASE("every member of Job has a key") {
     CHECK(keys_in("camera") == count_members<Job::Camera>());
     CHECK(keys_in("tests") == count_members<Job::Tests>());
     CHECK(keys_in("formats") == count_members<Job::Formats>());
-    CHECK(keys_in("hardware") == count_members<Job::Hardware>());
+    // A base and a struct within it count as one member each.
+    CHECK(keys_in("hardware") ==
+          count_members<Job::Hardware>() - 1 + count_members<DesignOptions>() - 1 + count_members<QueueDesign>());
     CHECK(keys_in("check") == count_members<Job::Check>());
     CHECK(keys_in("limits") == count_members<Job::Limits>());
     CHECK(keys_in("output") == count_members<Job::Output>());

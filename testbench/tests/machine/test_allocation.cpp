@@ -36,7 +36,7 @@ void expect_no_allocation_checked(const Job& job) {
     expect_no_allocation(setup, simulation);
 }
 
-void expect_no_allocation_scheduled(std::int64_t tests_units) {
+void expect_no_allocation_scheduled(unsigned tests_units) {
     Job job;
     job.mode = Mode::timed;
     job.hardware.tests_units = tests_units;
@@ -82,7 +82,7 @@ TEST_CASE("timed mode with three tests units, stalls and a queue that spills all
     Job job;
     job.mode = Mode::timed;
     job.hardware.tests_units = 3;
-    job.hardware.queue_capacity = 100;
+    job.hardware.queue.capacity = 100;
     job.timing.stalls = {1, 100, 16};
     const MachineSetup setup = setup_of(job);
     Simulation simulation(setup, 1'000'000);

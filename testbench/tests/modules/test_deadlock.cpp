@@ -25,10 +25,10 @@ void require_cycles_add_up(const Simulation& simulation) {
         testing::require_cycles_add_up(*unit, simulation.cycles());
 }
 
-Job full_queue_job(Overflow overflow) {
+Job full_queue_job(QueueOverflow overflow) {
     Job job = timed_job();
-    job.hardware.queue_capacity = 8;
-    job.hardware.queue_overflow = overflow;
+    job.hardware.queue.capacity = 8;
+    job.hardware.queue.overflow = overflow;
     return job;
 }
 
@@ -39,7 +39,7 @@ Job full_queue_job(Overflow overflow) {
 // triangle whose parts are not taken; and the queue's first triangle waits for Get Triangle: the cycle of waiting units
 // is closed.
 TEST_CASE("a full queue that stalls is a deadlock, reported unit by unit") {
-    const MachineSetup setup = setup_of(full_queue_job(Overflow::stall));
+    const MachineSetup setup = setup_of(full_queue_job(QueueOverflow::stall));
     Simulation simulation(setup, 1'000'000, 1'000'000);
     const std::string report = simulation.run();
     INFO(report);
@@ -62,12 +62,12 @@ TEST_CASE("a full queue that stalls is a deadlock, reported unit by unit") {
 }
 
 TEST_CASE("a full queue that spills is not a deadlock") {
-    TimedRun simulation(setup_of(full_queue_job(Overflow::spill)), 1'000'000);
+    TimedRun simulation(setup_of(full_queue_job(QueueOverflow::spill)), 1'000'000);
     CHECK(simulation.pipeline.triangle_queue.spilled() > 0);
 }
 
 TEST_CASE("a full queue that may not overflow ends the run with an error that names the key") {
-    const MachineSetup setup = setup_of(full_queue_job(Overflow::error));
+    const MachineSetup setup = setup_of(full_queue_job(QueueOverflow::error));
     Simulation simulation(setup, 1'000'000, 1'000'000);
     try {
         simulation.run();
@@ -79,9 +79,9 @@ TEST_CASE("a full queue that may not overflow ends the run with an error that na
 }
 
 TEST_CASE("a full queue, last in first out, with random stalls: a deadlock, not a crash") {
-    Job job = full_queue_job(Overflow::stall);
-    job.hardware.queue_order = QueueOrder::lifo;
-    job.hardware.queue_capacity = 1;
+    Job job = full_queue_job(QueueOverflow::stall);
+    job.hardware.queue.order = TriangleOrder::lifo;
+    job.hardware.queue.capacity = 1;
     job.timing.stalls = {7, 300, 16};
     const MachineSetup setup = setup_of(job);
     Simulation simulation(setup, 1'000'000, 1'000'000);

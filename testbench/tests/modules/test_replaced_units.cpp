@@ -308,7 +308,7 @@ Job packed_streams_job(Mode mode) {
     Job job = full_split_job(2, 3);
     job.mode = mode;
     job.hardware.tests_units = 3;
-    job.hardware.queue_capacity = 8;
+    job.hardware.queue.capacity = 8;
     job.tests.highlight = true;
     job.tests.highlight_angle = 60;
     return job;

@@ -196,33 +196,13 @@ const CaseTable stopped(
 
 TEST_CASE("drained: not notified in a deadlock") {
     Job job = timed_job();
-    job.hardware.queue_capacity = 8;
-    job.hardware.queue_overflow = Overflow::stall;
+    job.hardware.queue.capacity = 8;
+    job.hardware.queue.overflow = QueueOverflow::stall;
     const MachineSetup setup = setup_of(job);
     Simulation simulation(setup, 1'000'000);
     DrainedWatch watch("watch", *simulation.machines[0]);
     CHECK_THAT(simulation.run(), Catch::StartsWith("deadlock: "));
     CHECK(watch.notified == 0);
-}
-
-TEST_CASE("an inconsistent design is refused") {
-    MachineSetup setup = setup_of(one_quad_job());
-    const auto message = [&] {
-        try {
-            const Pipeline pipeline("tessera", setup.registers, setup.design);
-        } catch (const sc_core::sc_report& report) {
-            return std::string(report.get_msg());
-        }
-        return std::string();
-    };
-    setup.design.work = Work::family;
-    CHECK(message() == "tessera: Design::work and Formats::families disagree: set both, or neither");
-    setup.registers.formats.families = true;
-    setup.design.edge_lanes = 3;
-    CHECK_THAT(message(), Contains("need Work::family and TestOrder::cheap_first"));
-    setup.design.edge_lanes = 1;
-    setup.design.normal_tests = 2;
-    CHECK_THAT(message(), Contains("need Work::family and TestOrder::cheap_first"));
 }
 
 TEST_CASE("a table's row that no memory accepts is an error") {

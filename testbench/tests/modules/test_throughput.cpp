@@ -294,11 +294,12 @@ TEST_CASE("the join waits for a Transform of latency 400") {
     CHECK(2 * for_transform > simulation.cycles());
 }
 
-// With as many banks as a row has entries, the corners of a rectangle in one column are in one bank: it takes two
+// With a number of banks that divides a row's entries, the corners of a rectangle in one column are in one bank: it takes two
 // cycles, and the next one waits if it needs either bank, while nearly all banks idle.
 TEST_CASE("bank conflicts are a bottleneck even if most ports are idle") {
     MachineSetup setup = full_split();
-    setup.design.timing.summed_height_table.banks = setup.registers.height_table.columns;
+    setup.design.timing.summed_height_table.banks = setup.registers.height_table.columns / 5;
+    REQUIRE(setup.registers.height_table.columns == 5 * 53);
     FullSplitRun simulation(setup);
     const TableMemory& table = simulation.pipeline.height_table;
     CHECK(table.slots_taken() < table.slots_per_cycle() * simulation.cycles() / 5);

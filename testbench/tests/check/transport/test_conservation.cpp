@@ -386,7 +386,7 @@ TEST_CASE("conservation: an extra transformed vertex and extra decided triangles
 // Two places on chip: some of the spilled triangles are still off chip when the machine is stopped.
 TEST_CASE("conservation: spilled triangles still off chip do not count as read back") {
     Job job = full_split_job(1, 3);
-    job.hardware.queue_capacity = 2;
+    job.hardware.queue.capacity = 2;
     const MachineSetup setup = setup_of(job);
     Simulation simulation(setup, 10'000);
     TriangleQueue& queue = simulation.pipeline.triangle_queue;

@@ -165,7 +165,7 @@ TEST_CASE("work is conserved: half donut, functional, culled") {
 
 TEST_CASE("work is conserved: half donut, timed, a queue that spills, three tests units") {
     Job job = timed_job();
-    job.hardware.queue_capacity = 16;
+    job.hardware.queue.capacity = 16;
     job.hardware.tests_units = 3;
     require_work_conserved(job);
 }

@@ -72,6 +72,25 @@ TEST_CASE("full: the scale spans the source's range of values") {
                                           Contains("map.range = \"data\""));
 }
 
+TEST_CASE("full: values far beyond the range, and a map without relief, are said") {
+    const auto remarks = [](const std::vector<float>& values) {
+        HeightMap map = metres();
+        map.source_units = 1;
+        map.values = values;
+        MachineSetup setup;
+        machine_displacements(map, {}, &setup);
+        return setup.remarks;
+    };
+    const std::vector<std::string> beyond = remarks({20, 20.5F, 21, 21.5F});
+    REQUIRE(beyond.size() == 1);
+    CHECK_THAT(beyond.front(),
+               Contains("the map's values, 20 to 21.5, lie beyond the 0 to 1") && Contains("set map.range = \"data\""));
+    const std::vector<std::string> level = remarks({0.5F, 0.5F, 0.5F, 0.5F});
+    REQUIRE(level.size() == 1);
+    CHECK(level.front() == "every texel of the map holds 0.5: the surface has no relief");
+    CHECK(remarks({0, 0.5F, 0.7F, 1}).empty());
+}
+
 TEST_CASE("data: the scale and the codes span the values that occur") {
     const MapRange range{MapRange::Kind::data};
     HeightMap map = metres();
@@ -113,5 +132,5 @@ TEST_CASE("a map that uses less than an eighth of its range gets a remark") {
     };
     CHECK(remarks(0.125F) == 0);
     CHECK(remarks(0.124F) == 1);
-    CHECK(remarks(0) == 0);  // nothing to gain
+    CHECK(remarks(0) == 1);  // no relief  // nothing to gain
 }

@@ -284,7 +284,7 @@ TEST_CASE("statistics: one triangle's cycles in each unit are those worked out b
 
 TEST_CASE("statistics: spilled records are read back whole") {
     Job job = full_split_job(1, 2);
-    job.hardware.queue_capacity = 2;
+    job.hardware.queue.capacity = 2;
     TimedRun simulation(setup_of(job));
     const double spilled = static_cast<double>(simulation.pipeline.triangle_queue.spilled());
     REQUIRE(spilled > 0);

@@ -51,7 +51,7 @@ Job small_job(Mode mode) {
     Job job = full_split_job(1, 2);
     job.mode = mode;
     job.map.width = job.map.height = 32;
-    job.hardware.queue_capacity = 4;
+    job.hardware.queue.capacity = 4;
     job.timing.stalls = {5, 400, 24};
     return job;
 }
