@@ -30,43 +30,73 @@ std::uint32_t to_texture(double coordinate, std::uint32_t size, bool clamp, cons
     return static_cast<std::uint32_t>(fixed);
 }
 
-/// Throws InputError if a texture coordinate does not fit its format.
-void check_texture(const BaseMesh& mesh, const datapath::MapGeometry& map, const Format& format) {
-    double most = 0, coordinate = 0;  // in texels
-    std::uint32_t size = 0;
-    const auto look = [&](double value, std::uint32_t side, datapath::AddressMode mode) {
-        if (clamps(mesh, mode) || value * side <= most)
-            return;
-        most = value * side;
-        coordinate = value;
-        size = side;
-    };
-    for (const BaseVertex& vertex : mesh.vertices) {
-        look(vertex.texture.x, map.width, map.address_u);
-        look(vertex.texture.y, map.height, map.address_v);
-    }
-    // the border bit holds 2^integer itself and nothing beyond
-    const double limit = std::ldexp(1.0, format.bits - 1 - format.fraction);
-    if (std::nearbyint(std::ldexp(most, format.fraction)) <= std::ldexp(limit, format.fraction))
-        return;
-    const int integer = static_cast<int>(std::ceil(std::log2(most)));
-    throw InputError(fmt::format(
-        "texture coordinate {} is {} texels of a map of {}, beyond the 0..{} that the texture coordinate's format "
-        "holds: {}use a map of at most {} texels a side{}",
-        coordinate, most, size, limit,
-        integer > datapath::FormatLimits::texture_integer.most
-            ? ""
-            : fmt::format("set formats.texture_integer = {}, or ", integer),
-        static_cast<std::uint32_t>(size * limit / most),
-        mesh.beyond_map ? " or a smaller mesh.spacing" : ", or triangles that repeat it less often"));
-}
-
 /// Moves texture coordinates by whole periods as near to 0 as possible, so that they fit their format.
 BaseMesh with_low_texture(const BaseMesh& mesh, const datapath::MapGeometry& map, const Format& format) {
     const double texels = std::ldexp(1.0, format.bits - 1 - format.fraction);
     return bring_down_texture(
         mesh, {map.address_u == datapath::AddressMode::repeat, map.address_v == datapath::AddressMode::repeat},
         {texels / map.width, texels / map.height});
+}
+
+/// The largest texture coordinate on an axis that does not clamp.
+struct TextureReach {
+    double most = 0;        ///< texels
+    double coordinate = 0;  ///< u or v
+    std::uint32_t size = 0;
+    double limit = 0;  ///< texels: the border bit holds 2^integer itself and nothing beyond
+    bool fits = true;
+
+    std::uint32_t fitting_size() const { return static_cast<std::uint32_t>(size * limit / most); }
+};
+
+TextureReach texture_reach(const BaseMesh& mesh, const datapath::MapGeometry& map, const Format& format) {
+    TextureReach reach;
+    const auto look = [&](double value, std::uint32_t side, datapath::AddressMode mode) {
+        if (clamps(mesh, mode) || value * side <= reach.most)
+            return;
+        reach.most = value * side;
+        reach.coordinate = value;
+        reach.size = side;
+    };
+    for (const BaseVertex& vertex : mesh.vertices) {
+        look(vertex.texture.x, map.width, map.address_u);
+        look(vertex.texture.y, map.height, map.address_v);
+    }
+    reach.limit = std::ldexp(1.0, format.bits - 1 - format.fraction);
+    reach.fits = std::nearbyint(std::ldexp(reach.most, format.fraction)) <= std::ldexp(reach.limit, format.fraction);
+    return reach;
+}
+
+/// Throws InputError if a texture coordinate does not fit its format.
+void check_texture(const BaseMesh& mesh, const datapath::MapGeometry& map, const Format& format) {
+    const TextureReach reach = texture_reach(mesh, map, format);
+    if (reach.fits)
+        return;
+    const int integer = static_cast<int>(std::ceil(std::log2(reach.most)));
+    throw InputError(fmt::format(
+        "texture coordinate {} is {} texels of a map of {}, beyond the 0..{} that the texture coordinate's format "
+        "holds: {}use a map of at most {} texels a side{}",
+        reach.coordinate, reach.most, reach.size, reach.limit,
+        integer > datapath::FormatLimits::texture_integer.most
+            ? ""
+            : fmt::format("set formats.texture_integer = {}, or ", integer),
+        reach.fitting_size(),
+        mesh.beyond_map ? " or a smaller mesh.spacing" : ", or triangles that repeat it less often"));
+}
+
+/// What to do if texture coordinates beyond these clamped borders tile.
+std::string tiling_remedy(const BaseMesh& mesh, datapath::MapGeometry map, const Format& format, bool beyond_u,
+                          bool beyond_v) {
+    if (beyond_u)
+        map.address_u = datapath::AddressMode::repeat;
+    if (beyond_v)
+        map.address_v = datapath::AddressMode::repeat;
+    const TextureReach reach = texture_reach(with_low_texture(mesh, map, format), map, format);
+    const std::string remedy = !beyond_v   ? "set map.address_u = \"repeat\""
+                               : !beyond_u ? "set map.address_v = \"repeat\""
+                                           : "set map.address_u = \"repeat\" and map.address_v = \"repeat\"";
+    return reach.fits ? remedy
+                      : fmt::format("{}, with a map of at most {} texels a side", remedy, reach.fitting_size());
 }
 
 }  // namespace
@@ -121,13 +151,10 @@ void round_base_triangles(const BaseMesh& original, const ModelScale& model_scal
             fmt::format("{} base triangles collapsed when rounded to the hardware's formats, and were dropped",
                         scene.base_dropped));
     if (scene.texture_clamped > 0)
-        scene.remarks.push_back(
-            fmt::format("{} base vertices have texture coordinates outside 0..1, and were set to the map's border; if "
-                        "they tile, {}",
-                        scene.texture_clamped,
-                        !clamped_v   ? "set map.address_u = \"repeat\""
-                        : !clamped_u ? "set map.address_v = \"repeat\""
-                                     : "set map.address_u = \"repeat\" and map.address_v = \"repeat\""));
+        scene.remarks.push_back(fmt::format(
+            "{} base vertices have texture coordinates outside 0..1, and were set to the map's border, where "
+            "heights are its own and normals are not right; if they tile, {}",
+            scene.texture_clamped, tiling_remedy(original, map, formats.texture, clamped_u, clamped_v)));
 }
 
 }  // namespace tessera

@@ -154,8 +154,10 @@ bool is_normalised(const HeightMap& map) {
 }  // namespace
 
 void suspect_no_data(HeightMap& map, const std::vector<double>& given) {
-    constexpr std::size_t fewest_others = 8, most_suspects = 4;
-    constexpr double far_for_one = 1000;
+    constexpr std::size_t fewest_others = 8, many_others = 256, most_suspects = 4;
+    // Gaps beside an extreme value, relative to what the others span, from which it stands apart.
+    constexpr double far = 1, far_for_one = 1000, far_beside_many = 0.25, far_for_one_beside_many = 4;
+    constexpr double beyond_heights = 1e30;  // in any unit
     const bool normalised = is_normalised(map);
     Between rest{&map.values};
     std::vector<std::string> texts;
@@ -170,11 +172,12 @@ void suspect_no_data(HeightMap& map, const std::vector<double>& given) {
             const double gap = std::abs(static_cast<double>(it.next) - static_cast<double>(it.value));
             const double others =
                 std::abs(static_cast<double>(lowest ? high.value : low.value) - static_cast<double>(it.next));
-            if (gap < others * (it.count > 1 ? 1 : far_for_one))
-                continue;
             Between without = rest;
             (lowest ? without.floor : without.ceiling) = it.value;
-            if (!without.has_values(fewest_others))
+            const bool many = without.has_values(many_others), one = it.count == 1;
+            const double least_gap = many ? (one ? far_for_one_beside_many : far_beside_many) : one ? far_for_one : far;
+            const bool is_no_height = std::abs(it.value) > beyond_heights;
+            if (gap < others * least_gap || !without.has_values(is_no_height ? 1 : fewest_others))
                 continue;
             texts.push_back(fmt::format(
                 "{} texel{} exactly the {} value, {}, which is {:.6g} from the next, {}, while the others "

@@ -10,7 +10,8 @@
 namespace tessera {
 namespace {
 
-constexpr double on_edge = 1e-6;  // relative to the edge's length: files often have six decimals
+constexpr double same_normal = 1e-5;  // files often have six decimals; no format of normals distinguishes more
+constexpr double on_edge = 1e-6;      // relative to the edge's length: files often have six decimals
 
 struct BorderPoint {
     glm::dvec3 position;
@@ -162,7 +163,7 @@ void normal_flaws(const BaseMesh& mesh, const std::vector<std::uint32_t>& same_p
                   std::string_view normals_remedy, std::vector<std::string>& flaws) {
     std::vector<char> several(mesh.vertices.size(), 0);
     for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
-        if (mesh.vertices[i].normal != mesh.vertices[same_position[i]].normal)
+        if (glm::distance(mesh.vertices[i].normal, mesh.vertices[same_position[i]].normal) > same_normal)
             several[same_position[i]] = 1;
     if (const auto count = std::count(several.begin(), several.end(), 1); count > 0) {
         flaws.push_back(fmt::format("{} point(s) have more than one normal: the displaced surface opens there.{}{}",

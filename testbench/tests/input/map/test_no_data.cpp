@@ -176,9 +176,35 @@ TEST_CASE("a map that seems to have missing data says which value, how many texe
     HeightMap map = hill(35, 1235, 1e20, 9);
     map.values[0] = map.values[1] = -9999;
     CHECK(advised(hint(map, {7})) == "[7, 1e+20, -9999]");
-    INFO("one texel only if nothing else is left of the relief");
+    INFO("one texel of few values only if nothing else is left of the relief");
     CHECK(advised(hint(hill(35, 1235, -3.4e38, 1))) == "-3.4e+38");
     CHECK(hint(hill(35, 1235, -9999, 1)) == "");
+    INFO("few other values, if no height can be the one");
+    HeightMap two = hill(0, 0, -3.4e38, 30);
+    two.values.back() = 0.25F;
+    CHECK(advised(hint(two)) == "-3.4e+38");
+    for (float& value : two.values)
+        value = value < -1 ? -9999 : value;
+    CHECK(hint(two) == "");
+}
+
+TEST_CASE("beside many values, which lie close together, a narrower gap is enough") {
+    const auto slope = [](double low, double high, double hole, int holes, double units) {
+        HeightMap map;
+        map.width = map.height = 32;
+        map.source_units = units;
+        for (int k = 0; k < 1024; ++k)
+            map.values.push_back(static_cast<float>(
+                (k < holes ? hole : std::round(low + (high - low) * std::sqrt(k / 1023.0))) / units));
+        return advised(hint(map));
+    };
+    CHECK(slope(535, 1735, 0, 40, 65535) == "0");
+    CHECK(slope(1035, 2238, 0, 40, 1) == "0");
+    CHECK(slope(35, 1236, -500, 40, 1) == "-500");
+    CHECK(slope(35, 1236, -9999, 1, 1) == "-9999");
+    CHECK(slope(35, 1236, 9999, 1, 1) == "9999");
+    CHECK(slope(35, 1236, 100, 40, 1) == "");   // a cliff
+    CHECK(slope(35, 1236, -4000, 1, 1) == "");  // a shaft
 }
 
 TEST_CASE("ordinary maps do not seem to have missing data") {
