@@ -114,6 +114,10 @@ def report(options, sweep, designs, store):
         print(f"axis {axis} changed no figure", file=sys.stderr)
     write_page(table, options.output / "index.html")
     print(options.output / "index.html")
+    if counts["failed"] and not counts["ok"]:
+        print("scripts/sweep: no design finished; the first says: "
+              + next(row.reason for row in table.rows if row.status == "failed"), file=sys.stderr)
+        return 1
     return 1 if counts["no result"] else 0
 
 

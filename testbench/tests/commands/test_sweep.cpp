@@ -66,6 +66,16 @@ std::size_t results_in(const fs::path& store) {
 
 }  // namespace
 
+TEST_CASE("sweep: if no design finishes, the first reason is said, and the exit code is 1") {
+    if (!sweeps_run())
+        return;
+    const Checkout checkout;
+    const ProgramEnd end = sweep(checkout, replaced(small, "[set]\n", "[set]\n\"limits.triangles\" = 1\n"));
+    INFO(end.text());
+    CHECK(end.exit_code == 1);
+    CHECK_THAT(end.err, Contains("no design finished; the first says: exit code 4: "));
+}
+
 TEST_CASE("sweep: each design is a row, the front is marked, a failed run is a row with its reason") {
     if (!sweeps_run())
         return;
