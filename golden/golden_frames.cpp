@@ -91,7 +91,7 @@ std::vector<Corner> join_corners(const std::vector<BasePoint>& points,
 // A triangle as a map from texture to space. Errors are relative.
 struct Unwrapped {
     bool has_texture = false;
-    double area = 0, area_error = 0;  // the error times the area
+    double texture_area = 0, area = 0, area_error = 0;  // the error times the area
     glm::dvec3 along_u{0}, facing{0};
     double turn_error = 0;  // of along_u's direction
     double length_u = 0, length_v = 0, length_error = 0;
@@ -115,6 +115,7 @@ Unwrapped unwrap(const BasePoint& a, const BasePoint& b, const BasePoint& c) {
     if (!std::isfinite(result.length_u + result.length_v))
         return result;
     result.has_texture = true;
+    result.texture_area = std::abs(determinant) / 2;
     result.mirrored = determinant < 0;
     const double sizes = glm::length(p) * glm::length(q);
     const glm::dvec3 doubled = glm::cross(p, q);
@@ -163,17 +164,30 @@ BaseFrames derive_frames(const std::vector<BasePoint>& points,
                          const std::vector<std::array<std::uint32_t, 3>>& triangles) {
     std::vector<Corner> classes = join_corners(points, triangles);
     std::vector<std::array<Sum, 2>> sums(classes.size());
+    std::vector<Unwrapped> unwrapped;
+    unwrapped.reserve(triangles.size());
+    long double surface = 0, texture = 0;
+    for (const auto& [a, b, c] : triangles) {
+        unwrapped.push_back(unwrap(points[a], points[b], points[c]));
+        if (unwrapped.back().has_texture) {
+            surface += unwrapped.back().area;
+            texture += unwrapped.back().texture_area;
+        }
+    }
     glm::dvec2 lengths(0), errors(0);
     double area = 0;
     for (std::uint32_t t = 0; t < triangles.size(); ++t) {
         const auto& [a, b, c] = triangles[t];
-        const Unwrapped triangle = unwrap(points[a], points[b], points[c]);
+        const Unwrapped& triangle = unwrapped[t];
         if (!triangle.has_texture)
             continue;
         const bool turned = glm::dot(triangle.facing, points[a].normal + points[b].normal + points[c].normal) < -1e-6;
         for (std::uint32_t k = 0; k < 3; ++k) {
             sums[representative(classes, 3 * t + k)][triangle.mirrored != turned ? 1 : 0].add(triangle);
         }
+        // A sliver in the map says nothing of a texel's size.
+        if (triangle.texture_area / texture < 1e-4L * triangle.area / surface)
+            continue;
         const glm::dvec2 its(triangle.length_u, triangle.length_v);
         lengths += triangle.area * its;
         area += triangle.area;

@@ -31,7 +31,8 @@ struct TexelSpread {
     std::array<double, 2> mean{1, 1}, smallest{1, 1}, largest{1, 1};  ///< |dp/du|, |dp/dv|: model units per map
     double shear = 0;                                                 ///< most that dp/du, dp/dv miss 90 degrees by
     double median_error = 0, largest_error = 0;                       ///< of N', degrees
-    double wrong_percent = 0;  ///< of the surface, where N' is off by more than `noticeable`
+    double wrong_percent = 0;      ///< of the surface, where N' is off by more than `noticeable`
+    double wrong_map_percent = 0;  ///< of the map's area on it
 };
 
 /// The host's data: everything rounded to the hardware's formats.

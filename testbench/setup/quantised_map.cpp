@@ -40,17 +40,27 @@ Neighbours neighbours(std::uint32_t index, std::uint32_t size, datapath::Address
     return {before, after, static_cast<double>(after - before)};
 }
 
+/// Heights per `size` along u and v.
+std::array<double, 2> slopes(const QuantisedMap& map, std::uint32_t x, std::uint32_t y, double height_per_code,
+                             const std::array<double, 2>& size) {
+    const Neighbours u = neighbours(x, map.geometry.width, map.geometry.address_u);
+    const Neighbours v = neighbours(y, map.geometry.height, map.geometry.address_v);
+    const auto slope = [&](int difference, double distance, double unit) {
+        return distance > 0 ? height_per_code * difference / (distance * unit) : 0;
+    };
+    return {slope(map.code(u.after, y) - map.code(u.before, y), u.distance, size[0]),
+            slope(map.code(x, v.after) - map.code(x, v.before), v.distance, size[1])};
+}
+
 }  // namespace
+
+std::array<double, 2> map_rise(const QuantisedMap& map, std::uint32_t x, std::uint32_t y, double height_per_code) {
+    return slopes(map, x, y, height_per_code, {1, 1});
+}
 
 datapath::Direction map_normal(const QuantisedMap& map, std::uint32_t x, std::uint32_t y, double height_per_code,
                                const std::array<double, 2>& texel_size, const datapath::Format& format) {
-    const Neighbours u = neighbours(x, map.geometry.width, map.geometry.address_u);
-    const Neighbours v = neighbours(y, map.geometry.height, map.geometry.address_v);
-    const auto slope = [&](int difference, double distance, double size) {
-        return distance > 0 ? height_per_code * difference / (distance * size) : 0;
-    };
-    const double du = slope(map.code(u.after, y) - map.code(u.before, y), u.distance, texel_size[0]);
-    const double dv = slope(map.code(x, v.after) - map.code(x, v.before), v.distance, texel_size[1]);
+    const auto [du, dv] = slopes(map, x, y, height_per_code, texel_size);
     const double length = std::sqrt(du * du + dv * dv + 1);
     const auto component = [&](double value) {
         const double scaled = std::nearbyint(std::ldexp(value / length, format.fraction));

@@ -26,6 +26,9 @@ struct QuantisedMap {
 QuantisedMap quantise_map(const HeightMap& map, int bits, datapath::AddressMode address_u,
                           datapath::AddressMode address_v);
 
+/// The heights' rise per texel along u and v, by the differences of map_normal. In the unit of height_per_code.
+std::array<double, 2> map_rise(const QuantisedMap& map, std::uint32_t x, std::uint32_t y, double height_per_code);
+
 /// N_d at a texel (golden/ALGORITHM.md 2): normalise(-dh/du, -dh/dv, 1) by central differences of the heights,
 /// one-sided at a clamped border, periodic where the map repeats; rounded to the normal's format.
 /// height_per_code and texel_size are in the same world unit.

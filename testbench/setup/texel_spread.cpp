@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "testbench/setup/mesh/texture_gradient.h"
 
@@ -39,7 +40,8 @@ class Errors {
 
   private:
     static constexpr std::size_t steps_per_degree = 100;
-    std::array<double, 180 * steps_per_degree> areas_{};
+    // On the heap: a platform may prepare a scene on a SystemC thread's small stack.
+    std::vector<double> areas_ = std::vector<double>(180 * steps_per_degree);
     double total_ = 0, largest_ = 0;
 };
 
@@ -64,7 +66,7 @@ double error_of(const glm::dvec2& rise, const TexelAxes& own, const std::array<d
     return degrees * std::atan2(glm::length(glm::cross(right, used)), glm::dot(right, used));
 }
 
-/// Heights per texel at a texture coordinate in texels, by the normal map.
+/// Heights per texel at a texture coordinate in texels, before they are rounded to a normal map.
 glm::dvec2 rise_at(const glm::dvec2& t, const PreparedScene& scene) {
     const datapath::MapGeometry& map = scene.registers.map;
     const auto texel = [](double value, std::uint32_t size, datapath::AddressMode mode) {
@@ -72,11 +74,9 @@ glm::dvec2 rise_at(const glm::dvec2& t, const PreparedScene& scene) {
         const double inside = mode == datapath::AddressMode::repeat ? index - std::floor(index / size) * size : index;
         return static_cast<std::uint32_t>(std::clamp(inside, 0.0, last));
     };
-    const datapath::Direction n =
-        map_normal(scene.map, texel(t.x, map.width, map.address_u), texel(t.y, map.height, map.address_v),
-                   scene.height_per_code, scene.texel_size, scene.registers.formats.normal);
-    const double up = std::max(n.z, 1);
-    return {-n.x / up * scene.texel_size[0], -n.y / up * scene.texel_size[1]};
+    const auto [u, v] = map_rise(scene.map, texel(t.x, map.width, map.address_u), texel(t.y, map.height, map.address_v),
+                                 scene.height_per_code);
+    return {u, v};
 }
 
 /// Calls use(t) at the centres of `parts` * `parts` equal parts of a triangle.
@@ -107,7 +107,7 @@ TexelSpread measure_texel_spread(const BaseMesh& mesh, const PreparedScene& scen
     const double each = static_cast<double>(most_points) / static_cast<double>(chosen);
     const int parts = std::max(1, static_cast<int>(std::sqrt(each)));
     const glm::dvec2 texels(scene.registers.map.width, scene.registers.map.height);
-    Errors errors;
+    Errors errors, of_map;
     for (std::size_t k = 0; k < mesh.triangles.size(); k += stride) {
         const auto& triangle = mesh.triangles[k];
         const auto gradient = texture_gradient(mesh, triangle);
@@ -119,25 +119,40 @@ TexelSpread measure_texel_spread(const BaseMesh& mesh, const PreparedScene& scen
         for (std::size_t corner = 0; corner < 3; ++corner)
             corners[corner] = mesh.vertices[triangle[corner]].texture * texels;
         each_part(corners, parts, [&](const glm::dvec2& t) {
-            errors.add(error_of(rise_at(t, scene), own, scene.texel_size), gradient->area);
+            const double error = error_of(rise_at(t, scene), own, scene.texel_size);
+            errors.add(error, gradient->area);
+            of_map.add(error, gradient->texture_area);
         });
     }
     spread.median_error = errors.median();
     spread.largest_error = errors.largest();
     spread.wrong_percent = errors.percent_beyond(TexelSpread::noticeable);
+    spread.wrong_map_percent = of_map.percent_beyond(TexelSpread::noticeable);
     return spread;
 }
 
 std::string texel_spread_remark(const TexelSpread& spread) {
-    if (spread.wrong_percent <= 1)
+    if (spread.wrong_percent <= 1 && spread.wrong_map_percent <= 1)
         return {};
+    std::string spread_of_map, remedy;
+    for (const std::size_t axis : {std::size_t{0}, std::size_t{1}})
+        if (spread.largest[axis] > 1.01 * spread.smallest[axis])
+            spread_of_map += fmt::format("{}a whole map is {:.3g} to {:.3g} model units {} ({:.3g} serves)",
+                                         spread_of_map.empty() ? "" : ", ", spread.smallest[axis], spread.largest[axis],
+                                         axis == 0 ? "wide" : "high", spread.mean[axis]);
+    if (!spread_of_map.empty())
+        remedy = "with one texel density";
+    if (spread.shear >= 1) {
+        spread_of_map += fmt::format("{}its axes are up to {:.2g} degrees from perpendicular",
+                                     spread_of_map.empty() ? "" : ", ", spread.shear);
+        remedy += remedy.empty() ? "without shear" : " and without shear";
+    }
     return fmt::format(
-        "one texel size serves the whole mesh, but its triangles spread the map differently: a whole map is {:.3g} to "
-        "{:.3g} model units wide (mean {:.3g}) and {:.3g} to {:.3g} high (mean {:.3g}), and its axes are up to {:.2g} "
-        "degrees from perpendicular. Normals are off by more than {} degrees on {:.2g} % of the surface (median {:.3g}, "
-        "at most {:.3g} degrees); heights are right. Unwrap the mesh with one texel density and without shear",
-        spread.smallest[0], spread.largest[0], spread.mean[0], spread.smallest[1], spread.largest[1], spread.mean[1],
-        spread.shear, TexelSpread::noticeable, spread.wrong_percent, spread.median_error, spread.largest_error);
+        "one texel size serves the whole mesh, but its triangles spread the map differently: {}. Normals are off by more "
+        "than {} degrees on {:.2g} % of the surface and {:.2g} % of the map there (median {:.3g}, at most {:.3g} degrees); "
+        "heights are right. Unwrap the mesh {}",
+        spread_of_map, TexelSpread::noticeable, spread.wrong_percent, spread.wrong_map_percent, spread.median_error,
+        spread.largest_error, remedy);
 }
 
 }  // namespace tessera

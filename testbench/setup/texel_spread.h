@@ -8,8 +8,8 @@ namespace tessera {
 /// 2^16 points spread over the triangles. Needs the scene's map, formats, scale, height_per_code and texel_size.
 TexelSpread measure_texel_spread(const BaseMesh& mesh, const PreparedScene& scene);
 
-/// One sentence on a spread that matters, with figures and remedy; empty if more than 99 % of the surface has N' right to
-/// `TexelSpread::noticeable`.
+/// One sentence on a spread that matters, with figures and remedy; empty if 99 % of the surface, and of the map on it, have N'
+/// right to `TexelSpread::noticeable`.
 std::string texel_spread_remark(const TexelSpread& spread);
 
 }  // namespace tessera

@@ -32,7 +32,7 @@ struct BaseMesh {
     std::vector<BaseVertex> vertices;
     std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise seen from outside
 
-    /// Area-weighted mean of |dp/du| and |dp/dv|: world length of one unit of u and of v, and their spread.
+    /// Mean of |dp/du| and |dp/dv|, world length of one unit of u and of v, and their spread (texture_scale.h).
     struct TextureScale {
         double mean_u = 1, mean_v = 1;
         double smallest_u = 1, largest_u = 1, smallest_v = 1, largest_v = 1;

@@ -13,6 +13,7 @@ struct TextureGradient {
     glm::dvec3 dp_du, dp_dv;  ///< model units per unit of u, of v
     bool mirrored;            ///< winding is opposite in texture space
     double area;              ///< of the triangle, square model units
+    double texture_area;      ///< in units of u times v
 };
 
 /// Nothing if the triangle has no area in texture space (or so little that a gradient is not finite).
@@ -34,6 +35,7 @@ inline std::optional<TextureGradient> texture_gradient(const BaseMesh& mesh,
     gradient.dp_dv = (q * ab.x - p * ac.x) / determinant;
     gradient.mirrored = facing.z < 0;
     gradient.area = triangle_area(a.position, b.position, c.position);
+    gradient.texture_area = std::abs(determinant) / 2;
     const double check = safe_length(gradient.dp_du) + safe_length(gradient.dp_dv);
     if (!std::isfinite(check))
         return std::nullopt;

@@ -8,10 +8,12 @@
 namespace tessera {
 
 void measure_texture_scale(BaseMesh& mesh) {
-    double largest_area = 0;
+    double largest_area = 0, largest_texture_area = 0;
     for (const auto& triangle : mesh.triangles)
-        if (const auto gradient = texture_gradient(mesh, triangle))
+        if (const auto gradient = texture_gradient(mesh, triangle)) {
             largest_area = std::max(largest_area, gradient->area);
+            largest_texture_area = std::max(largest_texture_area, gradient->texture_area);
+        }
     if (!(largest_area > 0)) {
         mesh.texture_scale = {};
         mesh.repairs.push_back(
@@ -19,6 +21,15 @@ void measure_texture_scale(BaseMesh& mesh) {
             "map one model unit wide and high.");
         return;
     }
+    // relative, so that sums of squares of huge models stay finite
+    const auto share = [&](const TextureGradient& gradient) {
+        return glm::dvec2(gradient.area / largest_area, gradient.texture_area / largest_texture_area);
+    };
+    glm::dvec2 whole(0);
+    for (const auto& triangle : mesh.triangles)
+        if (const auto gradient = texture_gradient(mesh, triangle))
+            whole += share(*gradient);
+    constexpr double sliver = 1e-4;  // texture area for its area, relative to the mesh's
     constexpr double infinity = std::numeric_limits<double>::infinity();
     BaseMesh::TextureScale scale{0, 0, infinity, 0, infinity, 0};
     double total = 0;
@@ -26,7 +37,10 @@ void measure_texture_scale(BaseMesh& mesh) {
         const auto gradient = texture_gradient(mesh, triangle);
         if (!gradient)
             continue;
-        const double weight = gradient->area / largest_area;  // relative: sums of squares of huge models stay finite
+        const glm::dvec2 its = share(*gradient);
+        if (its.y * whole.x < sliver * its.x * whole.y)
+            continue;
+        const double weight = its.x;
         const double u = safe_length(gradient->dp_du), v = safe_length(gradient->dp_dv);
         total += weight;
         scale.mean_u += weight * u;

@@ -385,6 +385,27 @@ const CaseTable spreads("one texel size: ",
                             }
                         });
 
+TEST_CASE("one texel size: an island that is small on the surface and large in the map is said") {
+    BaseMesh mesh = parts_along_u(0.5).mesh();
+    const double shrunk = 1.0 / 16;  // the right half, to a 1/256 of its area
+    for (BaseVertex& vertex : mesh.vertices)
+        if (vertex.texture.x > 0.5)
+            vertex.position = glm::dvec3(0) + vertex.position * shrunk;
+    measure_texture_scale(mesh);
+    const MachineSetup setup = setup_of(mesh, hill_map(), "");
+    INFO(remarks_of(setup) << setup.texel_spread.wrong_percent << ' ' << setup.texel_spread.wrong_map_percent);
+    CHECK(setup.texel_spread.wrong_map_percent > 1);
+    CHECK_THAT(remarks_of(setup), Contains("one texel size") && Contains("% of the map there"));
+}
+
+TEST_CASE("one texel size: one so large that the normal map is flat is said") {
+    BaseMesh mesh = parts_along_u(0.5).mesh();
+    mesh.texture_scale.mean_u = mesh.texture_scale.mean_v = 1e6;
+    const MachineSetup setup = setup_of(mesh, hill_map(), "");
+    CHECK(setup.texel_spread.wrong_percent > 50);
+    CHECK_THAT(remarks_of(setup), Contains("one texel size"));
+}
+
 const std::string corners_of_cube =
     "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n";
 const std::string normals_of_cube = "vn 0 0 -1\nvn 0 0 1\nvn 0 -1 0\nvn 1 0 0\nvn 0 1 0\nvn -1 0 0\n";

@@ -187,6 +187,11 @@ TEST_CASE("repeated and turned-over triangles are dropped, two-sided sheets are 
     const BaseMesh sheet = parse(square + "vn 0 0 -1\nf 1/1/1 2/2/1 3/3/1\nf 3/3/2 2/2/2 1/1/2\n");
     CHECK(sheet.triangles.size() == 2);
     CHECK_THAT(all_repairs(sheet), Contains("more than one normal"));
+    const auto leaning = [&](const std::string& x) {
+        return all_repairs(parse(square + "vn " + x + " 0 1\nf 1/1/1 2/2/1 3/3/1\nf 1/1/2 3/3/2 4/4/2\n"));
+    };
+    CHECK_THAT(leaning("2e-6"), !Contains("more than one normal"));  // as six decimals round one
+    CHECK_THAT(leaning("1e-3"), Contains("2 point(s) have more than one normal"));
 }
 
 TEST_CASE("T-junctions, non-manifold edges and changes of winding are reported") {
@@ -272,6 +277,19 @@ TEST_CASE("texture scale is the area-weighted mean with its spread") {
     CHECK(mesh.texture_scale.largest_u == Approx(2));
     CHECK(mesh.texture_scale.mean_u == Approx(1.75));
     CHECK(mesh.texture_scale.mean_v == Approx(1));
+}
+
+TEST_CASE("slivers in the map do not count for a texel's size") {
+    const std::string quad = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n";
+    for (const char* const width : {"1e-5", "1e-9", "1e-12"}) {
+        const BaseMesh mesh =
+            parse(quad + "vt " + width + " 0.5\nf 1/1 2/2 3/3\nf 1/1 3/3 4/4\nf 1/1 4/4 5/5\nf 2/2 5/5 1/1\n");
+        CHECK(mesh.texture_scale.mean_u == Approx(1));
+        CHECK(mesh.texture_scale.largest_u == Approx(1));
+        CHECK(mesh.texture_scale.mean_v == Approx(4. / 3).margin(0.001));
+    }
+    const BaseMesh narrow = parse(quad + "vt 0.1 0.5\nf 1/1 2/2 3/3\nf 1/1 3/3 4/4\nf 1/1 4/4 5/5\n");  // no sliver
+    CHECK(narrow.texture_scale.largest_u > 9);
 }
 
 TEST_CASE("concave polygons are cut inside their outline") {
