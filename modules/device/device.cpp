@@ -4,6 +4,7 @@
 
 #include "modules/datapath/table_shapes.h"
 #include "modules/device/records.h"
+#include "modules/timing/design_keys.h"
 
 namespace tessera {
 
@@ -18,25 +19,35 @@ datapath::Registers for_largest_map(datapath::Registers registers, const Largest
     return registers;
 }
 
-void require(bool condition, const char* instance, const char* rule) {
-    if (!condition)
-        SC_REPORT_ERROR("tessera/device", (std::string(instance) + ": " + rule).c_str());
+/// SC_ERROR if a number lies outside its range.
+void require(const char* instance, const char* member, std::uint64_t value, std::uint64_t least, std::uint64_t most) {
+    if (value < least || value > most)
+        SC_REPORT_ERROR("tessera/device",
+                        (std::string(instance) + ": DeviceDesign::" + member + " = " + std::to_string(value) +
+                         ": must be " + std::to_string(least) + " to " + std::to_string(most))
+                            .c_str());
 }
 
-/// Checks the design before anything is built from it.
+/// Checks the design before anything is built from it; Pipeline checks the machine's.
 const DeviceDesign& checked(const DeviceDesign& design, const datapath::Registers& initial, const char* instance) {
     const std::uint64_t most_texels = std::uint64_t{1}
                                       << (initial.formats.texture.bits - 1 - initial.formats.texture.fraction);
-    const LargestMap& map = design.largest_map;
-    require(map.width >= 1 && map.height >= 1 && map.width <= most_texels && map.height <= most_texels, instance,
-            "the largest map has no texels, or more columns or rows than fit the texture coordinate's format");
-    require(
-        design.burst_bytes >= 4 && design.burst_bytes <= 4096 && (design.burst_bytes & (design.burst_bytes - 1)) == 0,
-        instance, "the burst size must be a power of two, 4 to 4096 bytes");
-    require(design.triangles_ahead >= 1 && design.finished_triangles >= 1, instance,
-            "triangles_ahead and finished_triangles must be at least 1");
-    require(design.machine.queue.capacity == 0 || design.machine.queue.overflow == QueueOverflow::spill, instance,
-            "a bounded queue that does not spill could stop the machine permanently");
+    require(instance, "largest_map.width", design.largest_map.width, 1, most_texels);
+    require(instance, "largest_map.height", design.largest_map.height, 1, most_texels);
+    require(instance, "burst_bytes", design.burst_bytes, 4, 4096);
+    if ((design.burst_bytes & (design.burst_bytes - 1)) != 0)
+        SC_REPORT_ERROR("tessera/device", (std::string(instance) + ": DeviceDesign::burst_bytes = " +
+                                           std::to_string(design.burst_bytes) + ": must be a power of two")
+                                              .c_str());
+    require(instance, "triangles_ahead", design.triangles_ahead, 1, most_places);
+    require(instance, "finished_triangles", design.finished_triangles, 1, most_places);
+    if (design.machine.queue.capacity != 0 && design.machine.queue.overflow != QueueOverflow::spill)
+        SC_REPORT_ERROR("tessera/device",
+                        (std::string(instance) +
+                         ": DeviceDesign::machine.queue.capacity = " + std::to_string(design.machine.queue.capacity) +
+                         ": a bounded queue that does not spill could stop the machine permanently: must be with " +
+                         "queue.overflow = QueueOverflow::spill")
+                            .c_str());
     return design;
 }
 

@@ -137,15 +137,19 @@ std::string texel_spread_remark(const TexelSpread& spread) {
     std::string spread_of_map, remedy;
     for (const std::size_t axis : {std::size_t{0}, std::size_t{1}})
         if (spread.largest[axis] > 1.01 * spread.smallest[axis])
-            spread_of_map += fmt::format("{}a whole map is {:.3g} to {:.3g} model units {} ({:.3g} serves)",
-                                         spread_of_map.empty() ? "" : ", ", spread.smallest[axis], spread.largest[axis],
-                                         axis == 0 ? "wide" : "high", spread.mean[axis]);
+            spread_of_map += fmt::format("{}{:.3g} to {:.3g} model units {} ({:.3g} serves)",
+                                         spread_of_map.empty() ? "a whole map is " : " and ", spread.smallest[axis],
+                                         spread.largest[axis], axis == 0 ? "wide" : "high", spread.mean[axis]);
     if (!spread_of_map.empty())
         remedy = "with one texel density";
     if (spread.shear >= 1) {
         spread_of_map += fmt::format("{}its axes are up to {:.2g} degrees from perpendicular",
-                                     spread_of_map.empty() ? "" : ", ", spread.shear);
+                                     spread_of_map.empty() ? "" : "; ", spread.shear);
         remedy += remedy.empty() ? "without shear" : " and without shear";
+    }
+    if (spread_of_map.empty()) {
+        spread_of_map = "some have next to no area in it";
+        remedy = "so that all have an area in the map";
     }
     return fmt::format(
         "one texel size serves the whole mesh, but its triangles spread the map differently: {}. Normals are off by more "

@@ -359,8 +359,6 @@ inline const std::vector<NotFollowed>& not_followed() {
         {"exceeded by the rounding of heights to codes: {}; set {}", "needs a job whose rounding exceeds the bound: tests/check/surface_error"},
         {"exceeded by the rounding of positions: {}; set {}", "needs a job whose rounding exceeds the bound: tests/check/surface_error"},
         {"transport_dbg for writes", "the libraries' user calls or sets something else; no command reaches it"},
-        {"the burst size must be a power of two, 4 to 4096 bytes", "the libraries' user calls or sets something else; no command reaches it"},
-        {"triangles_ahead and finished_triangles must be at least 1", "the libraries' user calls or sets something else; no command reaches it"},
         {": must be ", "the libraries' user calls or sets something else; no command reaches it"},
         {"Formats::distances = true", "the libraries' user calls or sets something else; no command reaches it"},
         {"disagree: set both, or neither", "the libraries' user calls or sets something else; no command reaches it"},

@@ -398,6 +398,13 @@ TEST_CASE("one texel size: an island that is small on the surface and large in t
     CHECK_THAT(remarks_of(setup), Contains("one texel size") && Contains("% of the map there"));
 }
 
+TEST_CASE("one texel size: triangles with next to no area in the map are said") {
+    const Plane plane{2, 1, {{{0.3, 0.2}, {1e-6, 0}, {0, 1}}, {{0, 0}, {1, 0}, {0, 1}}}};
+    const MachineSetup setup = setup_of(plane.mesh(), hill_map(), "");
+    CHECK(setup.texel_spread.wrong_percent > 1);
+    CHECK_THAT(remarks_of(setup), Contains("some have next to no area in it. Normals are off by"));
+}
+
 TEST_CASE("one texel size: one so large that the normal map is flat is said") {
     BaseMesh mesh = parts_along_u(0.5).mesh();
     mesh.texture_scale.mean_u = mesh.texture_scale.mean_v = 1e6;

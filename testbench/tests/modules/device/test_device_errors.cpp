@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <functional>
 
 #include "modules/device/program_registers.h"
@@ -491,18 +493,27 @@ TEST_CASE("an invalid device is refused during construction") {
     DeviceDesign design = design_of(setup);
     for (const auto& [width, height] : {std::pair{4097u, 1u}, {1u, 4097u}, {0u, 1u}, {1u, 0u}}) {
         design.largest_map = {width, height};
-        CHECK_THAT(refused(design), Catch::Contains("device: ") && Catch::Contains("largest map"));
+        const bool wide = width != 1;
+        CHECK(refused(design) == fmt::format("device: DeviceDesign::largest_map.{} = {}: must be 1 to 4096",
+                                             wide ? "width" : "height", wide ? width : height));
     }
     design = design_of(setup);
     for (const unsigned bytes : {0u, 2u, 48u, 8192u}) {
         design.burst_bytes = bytes;
-        CHECK_THAT(refused(design), Catch::Contains("burst"));
+        CHECK(refused(design) == fmt::format("device: DeviceDesign::burst_bytes = {}: must be {}", bytes,
+                                             bytes == 48 ? "a power of two" : "4 to 4096"));
     }
     design = design_of(setup);
     design.machine.queue.capacity = 10;
     design.machine.queue.overflow = QueueOverflow::stall;
-    CHECK_THAT(refused(design), Catch::Contains("queue"));
+    CHECK_THAT(refused(design), Catch::Contains("DeviceDesign::machine.queue.capacity = 10: a bounded queue"));
     design = design_of(setup);
     design.finished_triangles = 0;
-    CHECK_THAT(refused(design), Catch::Contains("at least 1"));
+    CHECK(refused(design) == "device: DeviceDesign::finished_triangles = 0: must be 1 to 65536");
+    design = design_of(setup);
+    design.triangles_ahead = 65537;
+    CHECK(refused(design) == "device: DeviceDesign::triangles_ahead = 65537: must be 1 to 65536");
+    design = design_of(setup);
+    design.machine.timing.transform.interval = 0;
+    CHECK_THAT(refused(design), Catch::Contains("device.machine: Design::timing.transform.interval = 0: must be 1 to"));
 }
