@@ -50,6 +50,9 @@ void measure_texture_scale(BaseMesh& mesh) {
         scale.smallest_v = std::min(scale.smallest_v, v);
         scale.largest_v = std::max(scale.largest_v, v);
     }
+    mesh.texture_scale = {};
+    if (!(total > 0))
+        return;  // only triangles without area in space have area in the map
     scale.mean_u /= total;
     scale.mean_v /= total;
     mesh.texture_scale = scale;
