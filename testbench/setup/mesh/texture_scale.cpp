@@ -52,7 +52,7 @@ void measure_texture_scale(BaseMesh& mesh) {
     }
     mesh.texture_scale = {};
     if (!(total > 0))
-        return;  // only triangles without area in space have area in the map
+        return;  // those that count have no area in space
     scale.mean_u /= total;
     scale.mean_v /= total;
     mesh.texture_scale = scale;
