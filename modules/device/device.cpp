@@ -19,13 +19,16 @@ datapath::Registers for_largest_map(datapath::Registers registers, const Largest
     return registers;
 }
 
-/// SC_ERROR if a number lies outside its range.
+/// SC_ERROR that names a member of the design, its value and its rule.
+void refuse(const char* instance, const char* member, std::uint64_t value, const std::string& rule) {
+    SC_REPORT_ERROR(
+        "tessera/device",
+        (std::string(instance) + ": DeviceDesign::" + member + " = " + std::to_string(value) + rule).c_str());
+}
+
 void require(const char* instance, const char* member, std::uint64_t value, std::uint64_t least, std::uint64_t most) {
     if (value < least || value > most)
-        SC_REPORT_ERROR("tessera/device",
-                        (std::string(instance) + ": DeviceDesign::" + member + " = " + std::to_string(value) +
-                         ": must be " + std::to_string(least) + " to " + std::to_string(most))
-                            .c_str());
+        refuse(instance, member, value, ": must be " + std::to_string(least) + " to " + std::to_string(most));
 }
 
 /// Checks the design before anything is built from it; Pipeline checks the machine's.
@@ -36,18 +39,13 @@ const DeviceDesign& checked(const DeviceDesign& design, const datapath::Register
     require(instance, "largest_map.height", design.largest_map.height, 1, most_texels);
     require(instance, "burst_bytes", design.burst_bytes, 4, 4096);
     if ((design.burst_bytes & (design.burst_bytes - 1)) != 0)
-        SC_REPORT_ERROR("tessera/device", (std::string(instance) + ": DeviceDesign::burst_bytes = " +
-                                           std::to_string(design.burst_bytes) + ": must be a power of two")
-                                              .c_str());
+        refuse(instance, "burst_bytes", design.burst_bytes, ": must be a power of two");
     require(instance, "triangles_ahead", design.triangles_ahead, 1, most_places);
     require(instance, "finished_triangles", design.finished_triangles, 1, most_places);
     if (design.machine.queue.capacity != 0 && design.machine.queue.overflow != QueueOverflow::spill)
-        SC_REPORT_ERROR("tessera/device",
-                        (std::string(instance) +
-                         ": DeviceDesign::machine.queue.capacity = " + std::to_string(design.machine.queue.capacity) +
-                         ": a bounded queue that does not spill could stop the machine permanently: must be with " +
-                         "queue.overflow = QueueOverflow::spill")
-                            .c_str());
+        refuse(instance, "machine.queue.capacity", design.machine.queue.capacity,
+               ": a bounded queue that does not spill could stop the machine permanently: must be with "
+               "queue.overflow = QueueOverflow::spill");
     return design;
 }
 

@@ -30,53 +30,55 @@ inline constexpr unsigned most_cycles = 1000000;  // of a latency or interval
 inline constexpr unsigned most_places = 65536;    // of a buffer
 inline constexpr unsigned most_triangles = 2147483647;
 
-/// Declares the three timing parameters of a unit. `unit(timing)` is a reference to its UnitTiming.
-template <typename Keys, typename Select>
-void declare_unit_keys(const Keys& key, const std::string& leaf, const std::string& name, Select unit,
+/// Declares the three timing parameters of a unit.
+template <typename Keys>
+void declare_unit_keys(const Keys& key, const std::string& leaf, const std::string& name, UnitTiming Timing::*unit,
                        const std::string& besides_latency = "",
                        const std::string& buffered = "capacity of its input buffer") {
     key.add_number(
-        leaf + ".latency", [unit](auto& t) -> auto& { return unit(t).latency; }, "cycles", {1, most_cycles},
+        leaf + ".latency", [unit](auto& t) -> auto& { return (t.*unit).latency; }, "cycles", {1, most_cycles},
         name + ": latency, from an item's start to its result" + besides_latency);
     key.add_number(
-        leaf + ".interval", [unit](auto& t) -> auto& { return unit(t).interval; }, "cycles", {1, most_cycles},
+        leaf + ".interval", [unit](auto& t) -> auto& { return (t.*unit).interval; }, "cycles", {1, most_cycles},
         name + ": initiation interval");
     key.add_number(
-        leaf + ".buffer", [unit](auto& t) -> auto& { return unit(t).buffer; }, "items", {1, most_places},
+        leaf + ".buffer", [unit](auto& t) -> auto& { return (t.*unit).buffer; }, "items", {1, most_places},
         name + ": " + buffered);
 }
 
-template <typename Keys, typename Select>
-void declare_memory_keys(const Keys& key, const std::string& leaf, const std::string& name, Select memory) {
+template <typename Keys>
+void declare_memory_keys(const Keys& key, const std::string& leaf, const std::string& name,
+                         MemoryTiming Timing::*memory) {
     key.add_number(
-        leaf + ".ports", [memory](auto& t) -> auto& { return memory(t).ports; }, "entries per cycle", {1, 64},
+        leaf + ".ports", [memory](auto& t) -> auto& { return (t.*memory).ports; }, "entries per cycle", {1, 64},
         name + ": ports of each bank");
     key.add_number(
-        leaf + ".banks", [memory](auto& t) -> auto& { return memory(t).banks; }, "-", {1, 64}, name + ": banks");
+        leaf + ".banks", [memory](auto& t) -> auto& { return (t.*memory).banks; }, "-", {1, 64}, name + ": banks");
     key.add_number(
-        leaf + ".latency", [memory](auto& t) -> auto& { return memory(t).latency; }, "cycles", {0, most_places},
+        leaf + ".latency", [memory](auto& t) -> auto& { return (t.*memory).latency; }, "cycles", {0, most_places},
         name + ": latency, from an entry's address to its data");
     key.add_number(
-        leaf + ".width", [memory](auto& t) -> auto& { return memory(t).width; }, "bytes per cycle", {0, 64},
+        leaf + ".width", [memory](auto& t) -> auto& { return (t.*memory).width; }, "bytes per cycle", {0, 64},
         name + ": width of a port; 0: a whole entry");
     key.add_number(
-        leaf + ".buffer", [memory](auto& t) -> auto& { return memory(t).buffer; }, "requests", {1, most_places},
+        leaf + ".buffer", [memory](auto& t) -> auto& { return (t.*memory).buffer; }, "requests", {1, most_places},
         name + ": capacity of its request buffer");
     key.add_number(
-        leaf + ".cache.bytes", [memory](auto& t) -> auto& { return memory(t).cache.bytes; }, "bytes", {0, 1 << 30},
+        leaf + ".cache.bytes", [memory](auto& t) -> auto& { return (t.*memory).cache.bytes; }, "bytes", {0, 1 << 30},
         name +
             ": size of the cache in front of it, rounded down to whole sets of lines, at least a line, at most the table; "
             "the cache has the ports, banks and latency above, and the table is in off-chip memory; 0: the table is on "
             "chip");
     key.add_number(
         {leaf + ".cache.line_bytes", leaf + "_line_bytes"},
-        [memory](auto& t) -> auto& { return memory(t).cache.line_bytes; }, "bytes", {1, 4096},
+        [memory](auto& t) -> auto& { return (t.*memory).cache.line_bytes; }, "bytes", {1, 4096},
         name + ": size of a cache line, rounded down to whole entries, at least one");
     key.add_number(
-        leaf + ".cache.ways", [memory](auto& t) -> auto& { return memory(t).cache.ways; }, "lines", {1, 64},
+        leaf + ".cache.ways", [memory](auto& t) -> auto& { return (t.*memory).cache.ways; }, "lines", {1, 64},
         name + ": associativity of its cache");
     key.add_number(
-        leaf + ".cache.fills", [memory](auto& t) -> auto& { return memory(t).cache.fills; }, "lines", {1, most_places},
+        leaf + ".cache.fills", [memory](auto& t) -> auto& { return (t.*memory).cache.fills; }, "lines",
+        {1, most_places},
         name + ": largest number of outstanding fills of its cache, and of requests that wait for them");
 }
 
@@ -90,59 +92,37 @@ void declare_timing_keys(const Keys& key) {
     key.add_number(
         {"cycle_picoseconds", "clock_period"}, [](auto& t) -> auto& { return t.cycle_picoseconds; }, "picoseconds",
         {1, 1000000000}, "Clock period");
-    declare_unit_keys(
-        key, "get_triangle", "Get Triangle", [](auto& t) -> auto& { return t.get_triangle; });
-    declare_unit_keys(
-        key, "calculate_new_p", "Calculate New P", [](auto& t) -> auto& { return t.calculate_new_p; });
-    declare_unit_keys(
-        key, "displace_vertex", "Displace Vertex", [](auto& t) -> auto& { return t.displace_vertex; },
-        ", not including table reads");
-    declare_unit_keys(
-        key, "transform", "Transform", [](auto& t) -> auto& { return t.transform; });
-    declare_unit_keys(
-        key, "calculate_new_u", "Calculate New U", [](auto& t) -> auto& { return t.calculate_new_u; });
-    declare_unit_keys(
-        key, "tex_coord_test", "Tex Coord Test", [](auto& t) -> auto& { return t.tex_coord_test; });
-    declare_unit_keys(
-        key, "summed_height_test", "Summed Height Test", [](auto& t) -> auto& { return t.summed_height_test; },
-        ", not including table reads");
-    declare_unit_keys(
-        key, "rank_test", "Rank Test", [](auto& t) -> auto& { return t.rank_test; }, ", not including table reads");
-    declare_unit_keys(
-        key, "curvature_test", "Curvature Test", [](auto& t) -> auto& { return t.curvature_test; },
-        ", not including table reads");
-    declare_unit_keys(
-        key, "mipmap_test", "Mipmap Test", [](auto& t) -> auto& { return t.mipmap_test; },
-        ", not including table reads");
-    declare_unit_keys(
-        key, "normal_test", "Normal Test", [](auto& t) -> auto& { return t.normal_test; },
-        ", not including table reads");
+    declare_unit_keys(key, "get_triangle", "Get Triangle", &Timing::get_triangle);
+    declare_unit_keys(key, "calculate_new_p", "Calculate New P", &Timing::calculate_new_p);
+    declare_unit_keys(key, "displace_vertex", "Displace Vertex", &Timing::displace_vertex,
+                      ", not including table reads");
+    declare_unit_keys(key, "transform", "Transform", &Timing::transform);
+    declare_unit_keys(key, "calculate_new_u", "Calculate New U", &Timing::calculate_new_u);
+    declare_unit_keys(key, "tex_coord_test", "Tex Coord Test", &Timing::tex_coord_test);
+    declare_unit_keys(key, "summed_height_test", "Summed Height Test", &Timing::summed_height_test,
+                      ", not including table reads");
+    declare_unit_keys(key, "rank_test", "Rank Test", &Timing::rank_test, ", not including table reads");
+    declare_unit_keys(key, "curvature_test", "Curvature Test", &Timing::curvature_test, ", not including table reads");
+    declare_unit_keys(key, "mipmap_test", "Mipmap Test", &Timing::mipmap_test, ", not including table reads");
+    declare_unit_keys(key, "normal_test", "Normal Test", &Timing::normal_test, ", not including table reads");
     key.add_number(
         "highlight_test_latency", [](auto& t) -> auto& { return t.highlight_test_latency; }, "cycles", {0, most_cycles},
         "Highlight Test, if present: added to the Normal Test's latency");
-    declare_unit_keys(
-        key, "view_test", "View Test", [](auto& t) -> auto& { return t.view_test; });
+    declare_unit_keys(key, "view_test", "View Test", &Timing::view_test);
     key.add_number(
         "results_buffer", [](auto& t) -> auto& { return t.results_buffer; }, "edges", {1, most_places},
         "Capacity of each input buffer of Collect Tests: results of one test that wait for the other three");
     key.add_number(
         "edges_in_sequence", [](auto& t) -> auto& { return t.edges_in_sequence; }, "edges", {1, most_places},
         "With hardware.test_order = \"cheap_first\": capacity of Sequence Tests, in edges whose cheap tests are done");
-    declare_unit_keys(
-        key, "pass_or_tessellate", "Pass or Tessellate", [](auto& t) -> auto& { return t.pass_or_tessellate; }, "",
-        "triangles that wait for parts from either branch");
-    declare_unit_keys(
-        key, "tessellation", "Tessellation", [](auto& t) -> auto& { return t.tessellation; });
-    declare_unit_keys(
-        key, "triangle_queue", "Triangle Queue", [](auto& t) -> auto& { return t.triangle_queue; });
-    declare_unit_keys(
-        key, "lighting", "Lighting", [](auto& t) -> auto& { return t.lighting; });
-    declare_memory_keys(
-        key, "displacement_map", "Displacement map", [](auto& t) -> auto& { return t.displacement_map; });
-    declare_memory_keys(
-        key, "normal_map", "Normal map", [](auto& t) -> auto& { return t.normal_map; });
-    declare_memory_keys(
-        key, "summed_height_table", "Summed Height Table", [](auto& t) -> auto& { return t.summed_height_table; });
+    declare_unit_keys(key, "pass_or_tessellate", "Pass or Tessellate", &Timing::pass_or_tessellate, "",
+                      "triangles that wait for parts from either branch");
+    declare_unit_keys(key, "tessellation", "Tessellation", &Timing::tessellation);
+    declare_unit_keys(key, "triangle_queue", "Triangle Queue", &Timing::triangle_queue);
+    declare_unit_keys(key, "lighting", "Lighting", &Timing::lighting);
+    declare_memory_keys(key, "displacement_map", "Displacement map", &Timing::displacement_map);
+    declare_memory_keys(key, "normal_map", "Normal map", &Timing::normal_map);
+    declare_memory_keys(key, "summed_height_table", "Summed Height Table", &Timing::summed_height_table);
     key.template add_choice<Interleave>(
         "summed_height_table.interleave", [](auto& t) -> auto& { return t.summed_height_table.interleave; },
         "Summed Height Table: how entries are assigned to banks. entry: one after another; xor: by exclusive ORs of bits "
@@ -151,12 +131,9 @@ void declare_timing_keys(const Keys& key) {
         "summed_height_table.window", [](auto& t) -> auto& { return t.summed_height_table.window; }, "rectangles",
         {0, most_places},
         "Summed Height Table: rectangles whose reads may overlap; 0: a rectangle is read when all of its banks are free");
-    declare_memory_keys(
-        key, "rank_table", "Rank Table", [](auto& t) -> auto& { return t.rank_table; });
-    declare_memory_keys(
-        key, "curvature_table", "Curvature Table", [](auto& t) -> auto& { return t.curvature_table; });
-    declare_memory_keys(
-        key, "mipmap_table", "Mipmap Table", [](auto& t) -> auto& { return t.mipmap_table; });
+    declare_memory_keys(key, "rank_table", "Rank Table", &Timing::rank_table);
+    declare_memory_keys(key, "curvature_table", "Curvature Table", &Timing::curvature_table);
+    declare_memory_keys(key, "mipmap_table", "Mipmap Table", &Timing::mipmap_table);
     key.add_number(
         {"off_chip_memory.latency", "off_chip_latency"}, [](auto& t) -> auto& { return t.off_chip_memory.latency; },
         "cycles", {0, most_places}, "Off-chip memory: latency, from a request's last byte to its answer");

@@ -172,12 +172,14 @@ void suspect_no_data(HeightMap& map, const std::vector<double>& given) {
             const double gap = std::abs(static_cast<double>(it.next) - static_cast<double>(it.value));
             const double others =
                 std::abs(static_cast<double>(lowest ? high.value : low.value) - static_cast<double>(it.next));
+            const bool one = it.count == 1;
+            if (gap < others * (one ? far_for_one_beside_many : far_beside_many))
+                continue;
             Between without = rest;
             (lowest ? without.floor : without.ceiling) = it.value;
-            const bool many = without.has_values(many_others), one = it.count == 1;
-            const double least_gap = many ? (one ? far_for_one_beside_many : far_beside_many) : one ? far_for_one : far;
             const bool is_no_height = std::abs(it.value) > beyond_heights;
-            if (gap < others * least_gap || !without.has_values(is_no_height ? 1 : fewest_others))
+            if (!without.has_values(is_no_height ? 1 : fewest_others) ||
+                (gap < others * (one ? far_for_one : far) && !without.has_values(many_others)))
                 continue;
             texts.push_back(fmt::format(
                 "{} texel{} exactly the {} value, {}, which is {:.6g} from the next, {}, while the others "
