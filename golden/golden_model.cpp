@@ -127,8 +127,12 @@ Vertex complete_base_vertex(const Vertex& base, const Map& map, const Parameters
 }
 
 Insertion insert_vertex(const Vertex& i, const Vertex& j, const Map& map, const Parameters& parameters) {
-    const Normalised normal = normalise((i.normal + j.normal) / 2.0);
-    const Normalised tangent = normalise((i.tangent + j.tangent) / 2.0);
+    const auto mean = [&](const glm::dvec3& a, const glm::dvec3& b) {
+        const glm::dvec3 half = (a + b) / 2.0, size = 2.0 * glm::abs(half);
+        return normalise(std::max({size.x, size.y, size.z}) < parameters.direction_step ? glm::dvec3(0) : half);
+    };
+    const Normalised normal = mean(i.normal, j.normal);
+    const Normalised tangent = mean(i.tangent, j.tangent);
     Insertion result;
     Vertex& v = result.vertex;
     v.position = (i.position + j.position) / 2.0;

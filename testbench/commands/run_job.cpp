@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "testbench/check/conformance/narrow_formats.h"
 #include "testbench/check/conformance/scoreboard.h"
 #include "testbench/check/conformance/texel_borders.h"
 #include "testbench/check/surface_error/bound_check.h"
@@ -255,8 +256,11 @@ Ending run_once(const Job& asked, const Command& command, const std::string& nam
         checks.work = work_result(*work, simulation);
     if (checked_units)
         checks.reads = checked_units->result();
-    checks.texel_borders =
-        texel_borders_warning(borders.count(), job, setup.registers.map.width, setup.registers.map.height);
+    const auto warn = [&](std::string warning) {
+        if (!warning.empty())
+            checks.warnings.push_back(std::move(warning));
+    };
+    warn(texel_borders_warning(borders.count(), job, setup.registers.map.width, setup.registers.map.height));
     checks.setup = setup_result.get();
     if (golden_run) {
         // Golden's own run does not saturate, so with saturated values the meshes cannot be compared.
@@ -268,6 +272,9 @@ Ending run_once(const Job& asked, const Command& command, const std::string& nam
                                 [&](double part) { progress.show("distances", 0.65 + 0.15 * part); });
         golden_run.reset();
     }
+    if ((checks.conformance && checks.conformance->flips_percent() > checks.allowed_flips) ||
+        (checks.end_to_end && !checks.end_to_end->passed()))
+        warn(narrow_formats_warning(job));
     if (setup.bound_asked) {
         progress.show("measuring the bound", 0.8);
         const Totals totals(simulation);

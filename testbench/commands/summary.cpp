@@ -249,8 +249,8 @@ std::string summary(const MachineSetup& setup, const Simulation& simulation, con
                             checks.conformance || checks.work || checks.reads ? ", with the checks of each edge" : ""));
     for (const std::string& warning : saturation_warnings(saturations))
         text += fmt::format("  warning: {}\n", warning);
-    if (!checks.texel_borders.empty())
-        text += fmt::format("  warning: {}\n", checks.texel_borders);
+    for (const std::string& warning : checks.warnings)
+        text += fmt::format("  warning: {}\n", warning);
     for (const std::string& note : saturation_notes(saturations))
         text += fmt::format("  note: {}\n", note);
     for (const std::string& remark : setup.remarks)

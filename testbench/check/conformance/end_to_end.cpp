@@ -23,6 +23,7 @@ std::uint64_t bound_of(const EmittedMesh& hardware) {
 
 golden::Parameters rounding_texture(golden::Parameters parameters, const MachineSetup& setup) {
     parameters.texture_step = std::ldexp(1.0, -setup.registers.formats.texture.fraction);
+    parameters.direction_step = std::ldexp(1.0, -setup.registers.formats.normal.fraction);
     parameters.distance_step = std::ldexp(1.0, -setup.registers.formats.view_distance.fraction);
     return parameters;
 }

@@ -24,7 +24,7 @@ struct Checks {
     std::optional<BoundResult> bound;  ///< with a Bound Test
     double allowed_flips = 0.5;        ///< percent of edges
     std::vector<std::string> remarks;  ///< repairs and anomalies of mesh and map; one sentence each
-    std::string texel_borders;         ///< a warning, see texel_borders.h; empty: none
+    std::vector<std::string> warnings;  ///< for the summary: what explains a failed check, and its remedy
 
     bool passed() const {
         return (!setup || setup->passed()) && (!conformance || conformance->passed(allowed_flips)) &&

@@ -18,6 +18,8 @@ constexpr double cancelled = 1e-6;
 constexpr double slip = 0.06;
 /// Texture coordinates are compared in these parts of the map: 1/16 texel of the largest.
 constexpr int texture_bits = 16;
+/// Directions of dp/du around a point differ by less, in degrees, on a curved mesh without a fault.
+constexpr double natural_turn = 15;
 /// Normals are against their triangle's winding only beyond rounding.
 constexpr double against_winding = -1e-6;
 
@@ -97,12 +99,24 @@ struct Sum {
 
 struct Frame {
     Sum straight, mirrored;
-    bool torn = false;  // used by both
+    bool torn = false;     // used by both
+    bool bridged = false;  // by a triangle without area in texture space
     glm::dvec3 tangent{0};
+    double turned = 0;  // largest angle in degrees from the tangent to a triangle's own, if bridged
 
     double area() const { return straight.area + mirrored.area; }
     bool is_mirrored() const { return mirrored.area > straight.area; }
 };
+
+/// Whether the triangle is mirrored in texture space, seen from the side of its vertices' normals.
+bool is_mirrored(const BaseMesh& mesh, const std::array<std::uint32_t, 3>& triangle, const TextureGradient& gradient) {
+    const auto vertex = [&](std::size_t k) -> const BaseVertex& { return mesh.vertices[triangle[k]]; };
+    const glm::dvec3 facing = triangle_normal(vertex(0).position, vertex(1).position, vertex(2).position);
+    double along = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+        along += glm::dot(facing, vertex(k).normal);
+    return gradient.mirrored != (along < against_winding);
+}
 
 void add_triangles(const BaseMesh& mesh, const std::vector<std::uint32_t>& frame_of, std::vector<Frame>& frames,
                    std::size_t& flat_texture) {
@@ -115,18 +129,16 @@ void add_triangles(const BaseMesh& mesh, const std::vector<std::uint32_t>& frame
         const auto gradient = texture_gradient(mesh, triangle);
         if (!gradient) {
             ++flat_texture;
+            for (std::size_t k = 0; k < 3; ++k)
+                frames[frame_of[3 * t + k]].bridged = true;
             continue;
         }
         const double weight = largest_area > 0 ? gradient->area / largest_area : 1;
         const glm::dvec3 direction = unit_or_zero(gradient->dp_du);
-        const glm::dvec3 facing = triangle_normal(position(triangle[0]), position(triangle[1]), position(triangle[2]));
-        double along = 0;
-        for (const std::uint32_t corner : triangle)
-            along += glm::dot(facing, mesh.vertices[corner].normal);
-        const bool inside_out = along < against_winding;
+        const bool mirrored = is_mirrored(mesh, triangle, *gradient);
         for (std::size_t k = 0; k < 3; ++k) {
             Frame& frame = frames[frame_of[3 * t + k]];
-            Sum& sum = gradient->mirrored != inside_out ? frame.mirrored : frame.straight;
+            Sum& sum = mirrored ? frame.mirrored : frame.straight;
             sum.direction += weight * direction;
             sum.area += weight;
         }
@@ -140,6 +152,24 @@ glm::dvec3 tangent_from(const Sum& sum, const glm::dvec3& normal) {
         return glm::dvec3(0);
     const glm::dvec3 rough = unit_or_zero(in_plane);
     return unit_or_zero(rough - normal * glm::dot(normal, rough));
+}
+
+/// Parts of the texture that only triangles without area in texture space connect may lie in different directions.
+void measure_turns(const BaseMesh& mesh, const std::vector<std::uint32_t>& frame_of, std::vector<Frame>& frames) {
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        const auto gradient = texture_gradient(mesh, mesh.triangles[t]);
+        if (!gradient)
+            continue;
+        const bool mirrored = is_mirrored(mesh, mesh.triangles[t], *gradient);
+        for (std::size_t k = 0; k < 3; ++k) {
+            Frame& frame = frames[frame_of[3 * t + k]];
+            if (!frame.bridged || frame.tangent == glm::dvec3(0) || mirrored != frame.is_mirrored())
+                continue;
+            const glm::dvec3 own = tangent_from({gradient->dp_du, 0}, mesh.vertices[mesh.triangles[t][k]].normal);
+            const double cosine = std::clamp(glm::dot(own, frame.tangent), -1.0, 1.0);
+            frame.turned = std::max(frame.turned, glm::degrees(std::acos(cosine)));
+        }
+    }
 }
 
 /// Gives each vertex the frame of its corners, and a vertex of several frames copies.
@@ -191,13 +221,27 @@ void complete_tangent_frames(BaseMesh& mesh) {
     std::size_t blank = 0;
     for (std::size_t corner = 0; corner < frame_of.size(); corner += 3)
         blank += std::all_of(&frame_of[corner], &frame_of[corner] + 3, [&](std::uint32_t f) { return frames[f].torn; });
+    if (flat_texture > 0)
+        measure_turns(mesh, frame_of, frames);
     hand_out(mesh, frame_of, frames);
 
+    std::size_t turned = 0;
+    double most_turned = 0;
+    for (const Frame& frame : frames) {
+        turned += frame.turned > natural_turn;
+        most_turned = std::max(most_turned, frame.turned);
+    }
     const auto say = [&](std::size_t count, const char* sentence) {
         if (count > 0)
             mesh.repairs.push_back(fmt::format(fmt::runtime(sentence), count));
     };
     say(flat_texture, "{} triangle(s) have no area in texture space and do not define a tangent.");
+    if (turned > 0)
+        mesh.repairs.push_back(fmt::format(
+            "At {} point(s) triangles without area in texture space connect parts of the texture that lie in different "
+            "directions: these get the mean, up to {:.0f} degrees from their own, and their normals are wrong. Unwrap "
+            "these triangles, too.",
+            turned, most_turned));
     say(without,
         "{} point(s) have no triangle with area in texture space, so no tangent: their normals are those of the base "
         "mesh.");

@@ -211,6 +211,7 @@ inline const std::map<std::string, std::vector<Remedy>>& remedies() {
          {
              {"square 1 | sed '$s,.*,vn 0 0 1\\nvn 0 0 -1\\nf 1/1/1 2/2/2 3/3/1,' > a.obj; run mesh.file=a.obj", "remove the normals (vn) from the mesh's file",
               "sed -i '/^vn/d;s,/. , ,g;s,/.$,,' a.obj; run mesh.file=a.obj"},
+             {"run formats.normal_bits=6 formats.normal_fraction=4", "and formats are narrow: set {}", "run formats.normal_bits=16 formats.normal_fraction=14"},
              {"run map.width=32", "{} = {} (a multiple of {} quads)", ""},
              {"run map.width=32", "{} = {} for a map of {} texels", ""},
              {"pgm 40 40 > a.pgm; run map.file=a.pgm mesh.source=cylinder mesh.columns=30 mesh.rows=30", "{} = {} for a map of {} texels", "run map.file=a.pgm mesh.source=cylinder mesh.columns=40 mesh.rows=40"},

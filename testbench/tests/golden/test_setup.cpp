@@ -197,6 +197,20 @@ TEST_CASE("base vertices: texture coordinates are in texels, clamped to the map 
     CHECK(on_grid({0.125, 0.375}, 0.25) == glm::dvec2(0, 0.5));  // ties: even
 }
 
+TEST_CASE("the mean of two directions that are opposite but for rounding is 0") {
+    const Map map(1, 1, AddressMode::clamp, AddressMode::clamp, {0});
+    Vertex i, j;
+    i.normal = i.tangent = {0.6, 0.8, 0};
+    j.normal = j.tangent = {-0.6, 1e-9 - 0.8, 0};
+    Parameters parameters;
+    CHECK(insert_vertex(i, j, map, parameters).vertex.normal == glm::dvec3(0, 1, 0));
+    parameters.direction_step = 1.0 / 16384;
+    CHECK(insert_vertex(i, j, map, parameters).vertex.normal == glm::dvec3(0));
+    CHECK(insert_vertex(i, j, map, parameters).vertex.tangent == glm::dvec3(0));
+    j.normal.y = 1.01 / 16384 - 0.8;
+    CHECK(insert_vertex(i, j, map, parameters).vertex.normal.y > 0.99);
+}
+
 TEST_CASE("an inserted texture coordinate is rounded down to the grid, if any") {
     const Map map(10, 20, AddressMode::clamp, AddressMode::clamp, std::vector<double>(200, 1));
     Vertex i, j;

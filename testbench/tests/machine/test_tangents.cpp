@@ -278,6 +278,23 @@ TEST_CASE("a small triangle turned over in the map follows the others around it"
     CHECK(mesh.vertices[0].tangent.x > 0.99);
 }
 
+TEST_CASE("parts of the map that only a triangle without area in it connects are said if they are turned") {
+    // two quads and a triangle between them, of `gap` degrees, both of whose sides lie on one line of the map
+    const auto fan = [](double gap) {
+        std::string text = "v 0 0 0\n";
+        for (const double angle : {90 + gap / 2, 90 - gap / 2, -gap / 2, 180 + gap / 2})
+            text += fmt::format("v {} {} 0\n", std::cos(angle / degrees), std::sin(angle / degrees));
+        return text +
+               "vn 0 0 1\nvt .5 .3\nvt .5 .5\nvt .7 .3\nvt .3 .3\nf 1/1/1 3/2/1 2/2/1\nf 1/1/1 4/3/1 3/2/1\n"
+               "f 1/1/1 2/2/1 5/4/1\n";
+    };
+    CHECK_THAT(repairs_of(parse_obj(fan(60), "fan")),
+               Contains("1 triangle(s) have no area") &&
+                   Contains("At 1 point(s) triangles without area in texture space connect") &&
+                   Contains("up to 30 degrees from their own"));
+    CHECK_THAT(repairs_of(parse_obj(fan(10), "fan")), Contains("1 triangle(s) have no area") && !Contains("connect"));
+}
+
 TEST_CASE("at a pole triangles with their own coordinates have their own tangents, with one there is none") {
     std::string own, one = "vt 0.5 1\n", ring;
     std::string own_faces, one_faces;

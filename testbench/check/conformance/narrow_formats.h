@@ -1,0 +1,12 @@
+#pragma once
+#include <string>
+
+#include "testbench/job/job.h"
+
+namespace tessera {
+
+/// A warning for a run whose mesh or decisions differ too much from golden's, which are not rounded: the formats that are
+/// narrower than their defaults, and the defaults. Empty if none is.
+std::string narrow_formats_warning(const Job& job);
+
+}  // namespace tessera
