@@ -18,9 +18,8 @@ enum class MapHeights { given, fitted };
 using Addressing = datapath::AddressMode;
 using datapath::HeightTest;
 using datapath::MapFilter;
-using datapath::Triangulation;
-enum class Culling { none, back };
 using datapath::SummedHeightUnit;
+using datapath::Triangulation;
 enum class Mode { functional, timed };
 /// The engine that counts the cycles of timed mode.
 enum class Engine { any, schedule, clocked };
@@ -39,7 +38,7 @@ struct MapRange {
 };
 
 /// One run of tessera, as described by a job file. Every key's unit, default, range and description are declared once,
-/// in job_keys.cpp and modules/timing/design_keys.h; the defaults are the initialisers below and form the default job
+/// in job_keys.cpp, testbench/setup/setting_keys.h and modules/timing/design_keys.h; the defaults are the initialisers below and form the default job
 /// (the half donut on the plane of 18 triangles).
 struct Job {
     struct Mesh {
@@ -93,17 +92,9 @@ struct Job {
     using Formats = FormatSettings;
     Formats formats;
 
-    struct Hardware : DesignOptions {
+    struct Hardware : DesignOptions, SceneOptions {
         DesignPreset design = DesignPreset::paper;  // sets the keys of design_preset.h
-        Triangulation triangulation = Triangulation::shorter;
-        HeightTest height_test = HeightTest::summed_height;
-        Culling culling = Culling::none;
-        bool final_edges = false;         // final edges are not tested again
-        bool one_texel_from_map = false;  // the sum over one texel is its code
-        MapFilter displacement_filter = MapFilter::nearest;
-        std::int64_t machines = 1;                      // side by side
-        std::array<double, 3> light{0.3, -0.4, 0.866};  // direction towards the light, world space
-        double ambient = 0.2;
+        std::int64_t machines = 1;                  // side by side
     } hardware;
 
     struct TimingSettings : Timing {  // timed mode: every unit's and memory's, see modules/timing/timing.h

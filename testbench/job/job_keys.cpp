@@ -6,36 +6,17 @@
 #include <type_traits>
 #include <utility>
 
-#include "modules/datapath/format.h"
 #include "modules/timing/design_keys.h"
 #include "testbench/job/job_choices.h"
 #include "testbench/job/toml_text.h"
-#include "testbench/setup/bound_promise.h"
+#include "testbench/setup/setting_keys.h"
 
 namespace tessera {
 
 namespace {
 
-constexpr double any_length = 1e6;       // model units; keeps products of lengths far from overflow
-constexpr double least_length = 1e-6;    // and quotients far from infinity
-constexpr double any_coordinate = 1e12;  // of a camera: what maps of a country or of a cell may have
 constexpr double any_count = 2147483647;
 constexpr double most_trace = 9e15;  // cycles; whole numbers a double holds
-
-constexpr KeyRange length_range{least_length, any_length};
-constexpr KeyRange coordinate_range{-any_coordinate, any_coordinate};
-constexpr KeyRange distance_range{1 / any_coordinate, any_coordinate};
-
-KeyRange between(double low, double high) {
-    return {low, high};
-}
-KeyRange zero_or_between(double low, double high) {
-    return {low, high, true};
-}
-KeyRange auto_or(KeyRange range) {
-    range.or_auto = true;
-    return range;
-}
 
 template <typename T>
 JobValue value_or_auto(const T& value, const KeyRange& range) {
@@ -107,8 +88,8 @@ class TableWriter {
             }
         };
     }
-    template <typename Enum, typename = std::enable_if_t<std::is_enum_v<Enum>>>
-    void add(const char* leaf, Enum Group::*member, const char* description) const {
+    template <typename Enum, typename Owner, typename = std::enable_if_t<std::is_enum_v<Enum>>>
+    void add(const char* leaf, Enum Owner::*member, const char* description) const {
         add_choice<Enum>(
             leaf, [member](auto& group) -> auto& { return group.*member; }, description);
     }
@@ -245,80 +226,21 @@ std::vector<KeyTable> declare_keys() {
         key.add("address_u", &Map::address_u, "Addressing beyond the map's left and right border; repeat closes a cylinder's seam");
         key.add("address_v", &Map::address_v, "Addressing beyond the map's lower and upper border");
     });
-    list.table("displacement", &Job::displacement, "From map value to height along the normal: bias + scale * (value - low) / (high - low), with low and high of map.range.", [](const auto& key) {
-        using Displacement = Job::Displacement;
-        key.add("scale", &Displacement::scale, "model units", auto_or(coordinate_range), "Difference in height between the low and the high end of map.range; auto: an eighth of the base mesh's largest extent if the mesh is flat (its smallest extent less than a tenth of the next), else a fortieth; reduced if values lie outside map.range, so that the highest displacement stays the same");
-        key.add("bias", &Displacement::bias, "model units", coordinate_range, "Height at the low end of map.range");
-    });
+    list.table("displacement", &Job::displacement, "From map value to height along the normal: bias + scale * (value - low) / (high - low), with low and high of map.range.", [](const auto& key) { declare_displacement_keys(key); });
     list.table("frames", &Job::frames, "Several frames with different displacement scales, each in its own run folder: frame_000, ... in output.folder.", [](const auto& key) {
         using Frames = Job::Frames;
         key.add("count", &Frames::count, "frames", between(1, 1000), "Number of frames; frame k of n has the scale first_scale + (displacement.scale - first_scale) * k / (n - 1); 1: a single run with displacement.scale");
         key.add("first_scale", &Frames::first_scale, "model units", coordinate_range, "Scale of frame 0; the last frame has the job's displacement.scale");
     });
-    list.table("camera", &Job::camera, "The camera, which the View Test depends on.", [](const auto& key) {
-        using Camera = Job::Camera;
-        key.add("eye", &Camera::eye, "model units", auto_or(coordinate_range), "Position of the camera; auto: 20 degrees to the right of the front and 38 degrees above it, at the distance at which the bounding box of the displaced model, over all frames, fits into 90 % of the picture's width and height. The front is -y, or z if up is y");
-        key.add("target", &Camera::target, "model units", auto_or(coordinate_range), "Point that the camera looks at; auto: the centre of that bounding box");
-        key.add("up", &Camera::up, "-", auto_or(coordinate_range), "Direction that points up in the picture, of any length; auto: for an OBJ file y, or if it is flat the axis perpendicular to it, on the side of its normals; for a run on an OBJ file (or on a run) the earlier run's camera.up; for any other source z. If the camera looks along that axis, the direction away from the model's front");
-        key.add("field_of_view", &Camera::field_of_view, "degrees", between(0.1, 179), "Vertical field of view");
-        key.add("near_plane", &Camera::near_plane, "model units", auto_or(distance_range), "Distance of the near plane; vertices on or behind it have no screen position; auto: a thousandth of the distance from eye to target");
-        key.add("viewport_width", &Camera::viewport_width, "pixels", between(1, 16384), "Width of the picture");
-        key.add("viewport_height", &Camera::viewport_height, "pixels", between(1, 16384), "Height of the picture");
-    });
-    list.table("tests", &Job::tests, "The edge tests: split = (normal or summed_height or highlight) and view and tex_coord and generation.", [](const auto& key) {
-        using Tests = Job::Tests;
-        key.add("normal", &Tests::normal, "Normal Test; off: never requests a split");
-        key.add("normal_threshold", &Tests::normal_threshold, "unit normal component", between(0, 2), "Normal Test: an edge requests a split if a component of two of its normals differs by more");
-        key.add("summed_height", &Tests::summed_height, "Summed Height Test, or its replacement (hardware.height_test); off: never requests a split");
-        key.add("summed_height_threshold", &Tests::summed_height_threshold, "full-scale texels (sum), full scale (area)", between(0, 1e9), "Summed Height Test: an edge requests a split if S_ij / 2 and (S_i + S_j) / 4 differ by more (sum), or if 2 S_ij and S_i + S_j differ by more than the threshold times the rectangle's area (area)");
-        key.add("summed_height_unit", &Tests::summed_height_unit, "Quantity that the threshold is compared with: sums over rectangles, or the second difference of their mean heights (area)");
-        key.add("rank_view", &Tests::rank_view, "With hardware.height_test = \"rank\": the error that its thresholds measure. none: on the surface; per_point, per_pixel: in the picture, in pixels, so that triangles are smaller nearer to camera.eye, with each point of the map, or each pixel, weighted equally. The latter two need hardware.test_order = \"cheap_first\"");
-        key.add("rank_threshold", &Tests::rank_threshold, "full scale times the root of a texel; pixels times the root of a texel (per_point), of a pixel (per_pixel)", between(0, 1e9), "With hardware.height_test = \"rank\" and formats.rank_bits: an edge requests a split if the square root of the squared error that its midpoint removes, per added triangle, is larger");
-        key.add("bound_threshold", &Tests::bound_threshold, "full scale; pixels (per_point, per_pixel)", between(0, 1e6), "With hardware.height_test = \"rank\" and formats.bound_bits: largest distance of a point of the map from the mesh, along the normal, or as it appears in the picture. Heights are the map's, before rounding; positions are rounded besides. Asked for if the Rank Table has bounds, or this key has another value than its default; a run then measures it at every texel's centre, and says that it holds, or what to set. It holds with: " + bound_condition_settings());
-        key.add("curvature_threshold", &Tests::curvature_threshold, "full scale times texels", between(0, 1e9), "With hardware.height_test = \"curvature\": an edge requests a split if the map deviates from its chord by more than the threshold divided by the edge's length in texels, rounded up to a power of two");
-        key.add("mipmap_filter", &Tests::mipmap_filter, "With hardware.height_test = \"mipmap\": height of a block of texels, their mean or their maximum");
-        key.add("mipmap_threshold", &Tests::mipmap_threshold, "full scale", between(0, 1), "With hardware.height_test = \"mipmap\": an edge requests a split if the filtered height at its midpoint deviates by more from the mean of those at its ends");
-        key.add("view", &Tests::view, "View Test; off: allows every split");
-        key.add("view_threshold", &Tests::view_threshold, "pixels", between(0, 1e6), "View Test: only an edge that is longer on the screen (Manhattan length) may be split");
-        key.add("tex_coord", &Tests::tex_coord, "Tex Coord Test: stops at the map's resolution; off: allows every split");
-        key.add("generation", &Tests::generation, "Generation Test; off: allows every split, so that a run may never end");
-        key.add("generation_limit", &Tests::generation_limit, "generations", between(0, 15), "Generation Test: largest generation of a new vertex, at most 2^formats.generation_bits - 1");
-        key.add("highlight", &Tests::highlight, "Highlight Test, for per-vertex lighting: smaller triangles in the Phong highlight of hardware.light; off: the design has no Highlight Test");
-        key.add("highlight_angle", &Tests::highlight_angle, "degrees", between(0, 90), "Highlight Test: a normal lies in the highlight if it is within this angle of the half vector between the directions to the light and to the viewer (camera.eye - camera.target)");
-        key.add("highlight_normal_threshold", &Tests::highlight_normal_threshold, "unit normal component", between(0, 2), "Highlight Test: an edge with a normal in the highlight requests a split if a component of two of its normals differs by more");
-    });
-    list.table("formats", &Job::formats, "Fixed-point formats of the hardware. The bits of signed formats include the sign.", [](const auto& key) {
-        using Formats = Job::Formats;
-        using Limits = datapath::FormatLimits;
-        const auto within = [](const Limits::Range& range) { return between(range.least, range.most); };
-        key.add("position_bits", &Formats::position_bits, "bits", within(Limits::position_bits), "Positions, signed");
-        key.add("position_fraction", &Formats::position_fraction, "bits", within(Limits::position_fraction), "Positions: fraction bits, fewer than position_bits");
-        key.add("normal_bits", &Formats::normal_bits, "bits", within(Limits::normal_bits), "Components of normals and tangents, signed");
-        key.add("normal_fraction", &Formats::normal_fraction, "bits", within(Limits::normal_fraction), "Normals: fraction bits, at least 2 fewer than normal_bits");
-        key.add("texture_integer", &Formats::texture_integer, "bits", within(Limits::texture_integer), "Texture coordinates, unsigned, in texels: integer bits");
-        key.add("texture_fraction", &Formats::texture_fraction, "bits", within(Limits::texture_fraction), "Texture coordinates: fraction bits");
-        key.add("tex_coord_fraction", &Formats::tex_coord_fraction, "bits", between(-1, Limits::tex_coord_fraction.most), "Tex Coord Test: fraction bits of the texture coordinates it compares, at most texture_fraction. 0 (the paper's): it stops at texels; 1: at half texels; -1: 1 with hardware.displacement_filter = \"bilinear\", whose heights vary within texels, else 0");
-        key.add("displacement_bits", &Formats::displacement_bits, "bits", within(Limits::displacement_bits), "Displacement map, unsigned");
-        key.add("summed_height_bits", &Formats::summed_height_bits, "bits", zero_or_between(Limits::summed_height_bits.least, Limits::summed_height_bits.most), "Summed Height Table, unsigned; 0: the least of 32, 40 and 48 that the mesh needs");
-        key.add("screen_bits", &Formats::screen_bits, "bits", within(Limits::screen_bits), "Screen positions, signed, in pixels");
-        key.add("screen_fraction", &Formats::screen_fraction, "bits", within(Limits::screen_fraction), "Screen positions: fraction bits, fewer than screen_bits");
-        key.add("rank_bits", &Formats::rank_bits, "bits", zero_or_between(Limits::rank_bits.least, Limits::rank_bits.most), "Rank Table: width of a rank; 0: the table has none");
-        key.add("bound_bits", &Formats::bound_bits, "bits", zero_or_between(Limits::bound_bits.least, Limits::bound_bits.most), "Rank Table: width of a bound; 0: the table has none");
-        key.add("generation_bits", &Formats::generation_bits, "bits", within(Limits::generation_bits), "Generation of a vertex, unsigned");
-    });
+    list.table("camera", &Job::camera, "The camera, which the View Test depends on.", [](const auto& key) { declare_camera_keys(key); });
+    list.table("tests", &Job::tests, "The edge tests: split = (normal or summed_height or highlight) and view and tex_coord and generation.", [](const auto& key) { declare_tests_keys(key); });
+    list.table("formats", &Job::formats, "Fixed-point formats of the hardware. The bits of signed formats include the sign.", [](const auto& key) { declare_formats_keys(key); });
     list.table("hardware", &Job::hardware, "The units' options.", [](const auto& key) {
         using Hardware = Job::Hardware;
         key.add("design", &Hardware::design, "Presets the keys of a design; each may be overridden. paper: the paper's; modern: a design that avoids its repeated work (modules/README.md, Designs); the mesh is the same");
-        key.add("triangulation", &Hardware::triangulation, "Diagonal when two edges split: the shorter one, or always the first or the second; greatest_rank, with hardware.height_test = \"rank\": only the edge of greatest rank is split, of those that request it");
-        key.add("height_test", &Hardware::height_test, "summed_height: the paper's Summed Height Test. In its place: rank: the host ranks the points of the base mesh's lattice, and an edge requests a split if the rank of its midpoint exceeds the threshold; curvature, for any base mesh: the host fits quadratics to the map, and an edge requests a split if they deviate from its chord; mipmap, the alternative that the paper discusses: compares heights of the map filtered to the edge's length");
-        key.add("culling", &Hardware::culling, "Back-face culling of finished triangles");
-        key.add("final_edges", &Hardware::final_edges, "An edge that was tested in a parent and not split is not tested again in its children; off: the paper's; the mesh is the same");
-        key.add("one_texel_from_map", &Hardware::one_texel_from_map, "Vertices carry their displacement codes; for rectangles of one texel, the Summed Height Test uses these and one read of the displacement map instead of the Summed Height Table; off: the paper's; the mesh is the same");
-        key.add("displacement_filter", &Hardware::displacement_filter, "Filter of the displacement map and the normal map. nearest: the texel under a vertex (the paper's); bilinear: between the four texels around it, which gives another surface and takes four reads instead of one");
+        declare_scene_keys(key);
         declare_option_keys(key);
         key.add("machines", &Hardware::machines, "-", between(1, 16), "Number of complete machines, each with its own tables and off-chip memory; base triangle k goes to machine k modulo their number");
-        key.add("light", &Hardware::light, "-", coordinate_range, "Direction towards the light, world space, of any length");
-        key.add("ambient", &Hardware::ambient, "full scale", between(0, 1), "Ambient light");
     });
     list.table("timing", &Job::timing, "Timed mode: the datasheet figures of every unit and memory.", [](const auto& key) {
         key.add("engine", &Job::TimingSettings::engine, "Timing engine; the results are the same. schedule: computes each item's cycles from those of earlier items, several times as fast; clocked: calls the units cycle by cycle; auto: schedule if the design and the run's options support it (modules/schedule/README.md)");

@@ -2,13 +2,13 @@
 #include <array>
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
 
 #include "testbench/job/job.h"
+#include "testbench/setup/key_range.h"
 
 namespace tessera {
 
@@ -32,14 +32,6 @@ enum class KeyKind {
     folder,  ///< a path relative to the current directory
 };
 
-/// Range of a number, or of each component of a vector or span: low .. high, both included.
-struct KeyRange {
-    double low = -std::numeric_limits<double>::infinity();
-    double high = std::numeric_limits<double>::infinity();
-    bool or_zero = false;  ///< 0 is also allowed
-    bool or_auto = false;  ///< "auto" is allowed instead: the member is `automatic`
-};
-
 struct Key {
     std::string name;  ///< dotted: mesh.columns
     KeyKind kind;
@@ -60,7 +52,8 @@ struct KeyTable {
     std::vector<Key> keys;
 };
 
-/// All keys, each declared once, in job_keys.cpp and modules/timing/design_keys.h. Reading, --set, dumping and the key
+/// All keys, each declared once, in job_keys.cpp, testbench/setup/setting_keys.h and
+/// modules/timing/design_keys.h. Reading, --set, dumping and the key
 /// reference are derived from them.
 const std::vector<KeyTable>& job_tables();
 

@@ -30,10 +30,6 @@ std::string joined(const std::vector<std::string_view>& names) {
     return fmt::format("{}", fmt::join(names, ", "));
 }
 
-bool in_range(const KeyRange& range, double value) {
-    return (value >= range.low && value <= range.high) || (range.or_zero && value == 0);
-}
-
 struct WithUnit {
     const Key& key;
     std::string operator()(const std::string& range) const { return key.unit == "-" ? range : range + " " + key.unit; }
@@ -46,7 +42,7 @@ struct FaultOf {
     std::string number(double value) const {
         if (!std::isfinite(value))
             return "is not a finite number; the range is " + WithUnit{key}(range_numbers(key));
-        return in_range(key.range, value) ? "" : "is out of range; the range is " + WithUnit{key}(range_numbers(key));
+        return key.range.holds(value) ? "" : "is out of range; the range is " + WithUnit{key}(range_numbers(key));
     }
 
     std::string text(const std::string& value) const {

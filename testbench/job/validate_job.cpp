@@ -21,13 +21,6 @@ namespace tessera {
 
 namespace {
 
-std::int64_t power_of_two_below(std::int64_t value) {
-    std::int64_t power = 1;
-    while (2 * power <= value)
-        power *= 2;
-    return power;
-}
-
 void check_ranges(const Job& job, Faults& faults) {
     for (const KeyTable& table : job_tables()) {
         for (const Key& key : table.keys) {
@@ -68,7 +61,7 @@ void check_mesh(const Job::Mesh& mesh, Faults& faults) {
     faults.unless((mesh.spacing & (mesh.spacing - 1)) == 0,
                   "`mesh.spacing` = {}: a lattice needs a power of two, so that midpoints are at texel centres: set "
                   "mesh.spacing = {}",
-                  mesh.spacing, power_of_two_below(mesh.spacing));
+                  mesh.spacing, std::int64_t{1} << (bits_for(mesh.spacing + 1) - 1));
     const bool round = mesh.source == MeshSource::cylinder || mesh.source == MeshSource::sphere;
     faults.unless(!round || mesh.columns == 0 || mesh.columns >= 3,
                   "`mesh.columns` = {}, but a {} needs 3 or more to close: set mesh.columns = 3 or more", mesh.columns,

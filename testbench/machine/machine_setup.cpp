@@ -26,20 +26,14 @@ Design make_design(const Job& job) {
 
 SceneSettings scene_settings(const Job& job) {
     SceneSettings settings;
+    static_cast<SceneOptions&>(settings) = job.hardware;
     settings.displacement = job.displacement;
     settings.camera = job.camera;
     settings.tests = job.tests;
     settings.formats = job.formats;
-    settings.light = {job.hardware.light, job.hardware.ambient};
     settings.address_u = job.map.address_u;
     settings.address_v = job.map.address_v;
-    settings.triangulation = job.hardware.triangulation;
-    settings.back_face_culling = job.hardware.culling == Culling::back;
-    settings.height_test = job.hardware.height_test;
     settings.families = job.hardware.work == Work::family;
-    settings.final_edges = job.hardware.final_edges;
-    settings.one_texel_from_map = job.hardware.one_texel_from_map;
-    settings.filter = job.hardware.displacement_filter;
     return settings;
 }
 
@@ -78,8 +72,7 @@ void fit_heights_to_own_mesh(std::int64_t most_triangles, MachineSetup& setup) {
 /// surface is nearly flat (metres in 16 bits), or lie far beyond them; else empty.
 std::string unused_range_remark(const MapRange& range, const HeightMap& map) {
     constexpr double least_part = 1.0 / 8;
-    const auto [lowest, highest] = std::minmax_element(map.values.begin(), map.values.end());
-    const double low = static_cast<double>(*lowest), high = static_cast<double>(*highest);
+    const auto [low, high] = map.extremes();
     const double part = (high - low) / (std::max(high, map.span_high) - std::min(low, map.span_low));
     if (high == low)
         return fmt::format("every texel of the map holds {:.6g}: the surface has no relief", low * map.source_units);

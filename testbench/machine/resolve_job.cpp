@@ -78,12 +78,6 @@ int flat_axis(const Box& box) {
     return extent[axes[0]] < flatness * extent[axes[1]] ? axes[0] : -1;
 }
 
-/// Lowest and highest value of the map.
-std::array<double, 2> values_of(const HeightMap& map) {
-    const auto [low, high] = std::minmax_element(map.values.begin(), map.values.end());
-    return {static_cast<double>(*low), static_cast<double>(*high)};
-}
-
 glm::dvec3 unit_axis(int axis, double sign) {
     glm::dvec3 result(0);
     result[axis] = sign;
@@ -158,7 +152,7 @@ class Resolver {
         double& scale = result_.job.displacement.scale;
         if (!is_automatic(scale))
             return;
-        const auto [low, high] = values_of(map_);
+        const auto [low, high] = map_.extremes();
         const double span = map_.span_high - map_.span_low;
         const double reach = std::max(high, map_.span_high) - std::min(low, map_.span_low);
         scale = (flat_ >= 0 ? flat_scale : round_scale) * base_.largest();
@@ -190,7 +184,7 @@ class Resolver {
     /// Lowest and highest displacement of the first and of the last frame; those in between stay within.
     std::vector<double> heights_of_all_frames() const {
         std::vector<double> heights;
-        for (const double value : values_of(map_))
+        for (const double value : map_.extremes())
             for (const Job::Displacement& frame : extreme_frames())
                 heights.push_back(MapDisplacement::from(frame, map_).of(value));
         return heights;

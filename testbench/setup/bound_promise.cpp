@@ -19,7 +19,7 @@ BoundFacts facts_of(const SceneSettings& settings, const BaseMesh& mesh, const P
     facts.tests = settings.tests;
     facts.height_test = settings.height_test;
     facts.triangulation = settings.triangulation;
-    facts.culling = settings.back_face_culling;
+    facts.culling = settings.culling != Culling::none;
     facts.fitted = !scene.fitted_heights.empty();
     facts.lattice = mesh.beyond_map;
     facts.closed = tables.clashes == 0;

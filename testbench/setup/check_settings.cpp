@@ -10,6 +10,7 @@
 #include "modules/datapath/format.h"
 #include "testbench/setup/faults.h"
 #include "testbench/setup/mesh/triangle_geometry.h"
+#include "testbench/setup/setting_keys.h"
 #include "testbench/setup/unit_vector.h"
 
 namespace tessera {
@@ -104,52 +105,51 @@ void check_formats(const FormatSettings& formats, const TestSettings& tests, Fau
                   bits_for(tests.generation_limit + 1));
 }
 
-/// Checks that a coordinate or direction is set and finite.
-void check_vector(const char* name, const Vector& v, Faults& faults) {
-    faults.unless(std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]),
-                  "`{}` is not set, or not finite: set three numbers", name);
-}
+/// Checks each member of `Group`, a part of SceneSettings, against its declared range.
+template <typename Group>
+class RangeCheck {
+  public:
+    RangeCheck(const char* part, const Group& group, Faults& faults) : part_(part), group_(group), faults_(faults) {}
+
+    template <typename Choice, typename Owner>
+    void add(const char* /*name*/, Choice Owner::* /*member*/, const char* /*description*/) const {}
+    void add(const char* name, std::int64_t Group::*member, const char* /*unit*/, const KeyRange& range,
+             const char* /*description*/) const {
+        check(name, static_cast<double>(group_.*member), range);
+    }
+    void add(const char* name, double Group::*member, const char* /*unit*/, const KeyRange& range,
+             const std::string& /*description*/) const {
+        check(name, group_.*member, range);
+    }
+    void add(const char* name, Vector Group::*member, const char* /*unit*/, const KeyRange& range,
+             const char* /*description*/) const {
+        const Vector& value = group_.*member;
+        const auto wrong = std::find_if_not(value.begin(), value.end(), [&](double v) { return range.holds(v); });
+        if (wrong != value.end())
+            check(name, *wrong, range);
+    }
+
+  private:
+    void check(const std::string& name, double value, const KeyRange& range) const {
+        if (is_automatic(value))
+            faults_.texts.push_back(fmt::format("`{}{}` is not set, or not a number: set it", part_, name));
+        else
+            faults_.unless(range.holds(value), "`{}{}` = {}: must be {}{} to {}", part_, name, value,
+                           range.or_zero ? "0, or " : "", range.low, range.high);
+    }
+
+    const char* part_;
+    const Group& group_;
+    Faults& faults_;
+};
 
 void check_ranges(const SceneSettings& settings, Faults& faults) {
-    const FormatSettings& f = settings.formats;
-    using Limits = datapath::FormatLimits;
-    const auto bits = [&](const char* name, std::int64_t value, const Limits::Range& range) {
-        faults.range(name, static_cast<double>(value), range.least, range.most);
-    };
-    bits("formats.position_bits", f.position_bits, Limits::position_bits);
-    bits("formats.position_fraction", f.position_fraction, Limits::position_fraction);
-    bits("formats.normal_bits", f.normal_bits, Limits::normal_bits);
-    bits("formats.normal_fraction", f.normal_fraction, Limits::normal_fraction);
-    bits("formats.texture_integer", f.texture_integer, Limits::texture_integer);
-    bits("formats.texture_fraction", f.texture_fraction, Limits::texture_fraction);
-    if (f.tex_coord_fraction != -1)
-        bits("formats.tex_coord_fraction", f.tex_coord_fraction, Limits::tex_coord_fraction);
-    bits("formats.displacement_bits", f.displacement_bits, Limits::displacement_bits);
-    if (f.summed_height_bits != 0)
-        bits("formats.summed_height_bits", f.summed_height_bits, Limits::summed_height_bits);
-    bits("formats.screen_bits", f.screen_bits, Limits::screen_bits);
-    bits("formats.screen_fraction", f.screen_fraction, Limits::screen_fraction);
-    bits("formats.generation_bits", f.generation_bits, Limits::generation_bits);
-    const TestSettings& t = settings.tests;
-    faults.range("tests.normal_threshold", t.normal_threshold, 0, 2);
-    faults.range("tests.summed_height_threshold", t.summed_height_threshold, 0, 1e9);
-    faults.range("tests.view_threshold", t.view_threshold, 0, 1e6);
-    faults.range("tests.generation_limit", static_cast<double>(t.generation_limit), 0, 15);
-    faults.range("tests.highlight_angle", t.highlight_angle, 0, 90);
-    faults.range("tests.highlight_normal_threshold", t.highlight_normal_threshold, 0, 2);
-    const CameraSettings& c = settings.camera;
-    check_vector("camera.eye", c.eye, faults);
-    check_vector("camera.target", c.target, faults);
-    check_vector("camera.up", c.up, faults);
-    faults.range("camera.field_of_view", c.field_of_view, 0.1, 179);
-    faults.range("camera.near_plane", c.near_plane, 1e-12, 1e12);
-    faults.range("camera.viewport_width", static_cast<double>(c.viewport_width), 1, 16384);
-    faults.range("camera.viewport_height", static_cast<double>(c.viewport_height), 1, 16384);
-    faults.range("displacement.scale", settings.displacement.scale, -1e12, 1e12);
-    faults.range("displacement.bias", settings.displacement.bias, -1e12, 1e12);
-    check_vector("light.direction", settings.light.direction, faults);
-    faults.unless(settings.light.direction != Vector{}, "`light.direction` has no direction: set it");
-    faults.range("light.ambient", settings.light.ambient, 0, 1);
+    declare_scene_keys(RangeCheck<SceneOptions>("", settings, faults));
+    declare_displacement_keys(RangeCheck<DisplacementSettings>("displacement.", settings.displacement, faults));
+    declare_camera_keys(RangeCheck<CameraSettings>("camera.", settings.camera, faults));
+    declare_tests_keys(RangeCheck<TestSettings>("tests.", settings.tests, faults));
+    declare_formats_keys(RangeCheck<FormatSettings>("formats.", settings.formats, faults));
+    faults.unless(settings.light != Vector{}, "`light` has no direction: set one, such as [0, 0, 1]");
 }
 
 }  // namespace

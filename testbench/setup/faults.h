@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "testbench/common/error.h"
-#include "testbench/setup/scene_settings.h"
 
 namespace tessera {
 
@@ -17,12 +16,6 @@ class Faults {
     void unless(bool fine, fmt::format_string<Args...> format, Args&&... args) {
         if (!fine)
             texts.push_back(fmt::format(format, std::forward<Args>(args)...));
-    }
-    void range(const char* name, double value, double least, double most) {
-        if (is_automatic(value))
-            texts.push_back(fmt::format("`{}` is not set, or not a number: set it", name));
-        else
-            unless(value >= least && value <= most, "`{}` = {}: must be {} to {}", name, value, least, most);
     }
     /// Throws one InputError with all faults, if there are any.
     void raise() const {

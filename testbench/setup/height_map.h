@@ -1,4 +1,6 @@
 #pragma once
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -55,6 +57,12 @@ struct HeightMap {
     }
     float at(int x, int y) const {
         return values[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
+    }
+
+    /// Lowest and highest value.
+    std::array<double, 2> extremes() const {
+        const auto [low, high] = std::minmax_element(values.begin(), values.end());
+        return {static_cast<double>(*low), static_cast<double>(*high)};
     }
 };
 

@@ -23,8 +23,7 @@ namespace {
 /// The cause of a displacement that is too large by `factor`, and what to do.
 std::string cause_of(const DisplacementSettings& settings, const HeightMap& map, const Format& position,
                      double factor) {
-    const auto [lowest, highest] = std::minmax_element(map.values.begin(), map.values.end());
-    const double low = static_cast<double>(*lowest), high = static_cast<double>(*highest);
+    const auto [low, high] = map.extremes();
     const auto source = [&](double value) { return value * map.source_units; };
     const std::string values = fmt::format(
         "The map's values are {:.6g} to {:.6g}, of which displacement.scale = {:.6g} spans {:.6g} to {:.6g}",

@@ -120,10 +120,9 @@ void make_height_table(const TestSettings& tests, PreparedScene& scene) {
 std::string relief_remark(const HeightMap& map, const DisplacementSettings& settings, double scale,
                           const datapath::Format& position) {
     constexpr double fewest_steps = 16;
-    const auto [lowest, highest] = std::minmax_element(map.values.begin(), map.values.end());
+    const auto [lowest, highest] = map.extremes();
     const MapDisplacement displacement = MapDisplacement::from(settings, map);
-    const double low = displacement.of(static_cast<double>(*lowest));
-    const double high = displacement.of(static_cast<double>(*highest));
+    const double low = displacement.of(lowest), high = displacement.of(highest);
     const double steps = std::ldexp(std::abs(high - low) * scale, position.fraction);
     if (steps == 0 || steps >= fewest_steps)
         return {};
@@ -163,7 +162,7 @@ PreparedScene prepare_model(const SceneSettings& settings, const BaseMesh& mesh,
     datapath::Registers& registers = scene.registers;
     datapath::Formats& formats = registers.formats;
     std::uint64_t& saturated = scene.input_saturations.registers;
-    formats = make_formats(settings.formats, settings.filter);
+    formats = make_formats(settings.formats, settings.displacement_filter);
     scene.map = quantise_map(map, formats.displacement.bits, settings.address_u, settings.address_v);
     registers.map = scene.map.geometry;
 
@@ -213,14 +212,14 @@ PreparedScene prepare_model(const SceneSettings& settings, const BaseMesh& mesh,
     formats.families = settings.families;
     formats.final_edges = settings.final_edges && !formats.families;
     formats.codes = settings.one_texel_from_map && formats.height_test == datapath::HeightTest::summed_height;
-    if (settings.tests.highlight && !set_highlight_test(settings.tests, towards_light(settings.light), view.backward,
-                                                        formats, registers.tests, saturated))
+    if (settings.tests.highlight && !set_highlight_test(settings.tests, towards_light(settings), view.backward, formats,
+                                                        registers.tests, saturated))
         scene.remarks.emplace_back(
             "hardware.light points directly away from the viewer: there is no highlight, and the Highlight "
             "Test never requests a split");
-    registers.light = make_light(settings.light, view, formats.normal, saturated);
+    registers.light = make_light(settings, view, formats.normal, saturated);
     registers.triangulation = settings.triangulation;
-    registers.back_face_culling = settings.back_face_culling;
+    registers.back_face_culling = settings.culling == Culling::back;
     check_registers(registers);
     return scene;
 }

@@ -51,7 +51,7 @@ enum class MipmapFilter : std::uint8_t {
 };
 
 /// The edge tests: split = (normal or summed_height or highlight) and view and tex_coord and generation. summed_height:
-/// or the test that replaces it (SceneSettings::height_test).
+/// or the test that replaces it (SceneOptions::height_test).
 struct TestSettings {
     bool normal = true;
     double normal_threshold = 0.12;  ///< difference of one component of two unit normals
@@ -74,7 +74,7 @@ struct TestSettings {
     double highlight_normal_threshold = 0.05;  ///< difference of one component of two unit normals
 };
 
-/// Fixed-point formats; bits include the sign, if any. Ranges: datapath::FormatLimits.
+/// Fixed-point formats; bits include the sign, if any.
 struct FormatSettings {
     std::int64_t position_bits = 32, position_fraction = 16;
     std::int64_t normal_bits = 16, normal_fraction = 14;
@@ -88,28 +88,29 @@ struct FormatSettings {
     std::int64_t bound_bits = 0;  ///< likewise: bounds
 };
 
-struct LightSettings {
-    std::array<double, 3> direction{0.3, -0.4, 0.866};  ///< towards the light, world space, of any length
-    double ambient = 0.2;                               ///< fraction of full scale, on every surface
+enum class Culling : std::uint8_t { none, back };
+
+/// What the machine computes, besides the tests' switches and thresholds.
+struct SceneOptions {
+    datapath::Triangulation triangulation = datapath::Triangulation::shorter;
+    datapath::HeightTest height_test = datapath::HeightTest::summed_height;
+    Culling culling = Culling::none;
+    bool final_edges = false;         ///< edges that are known not to split are not tested again
+    bool one_texel_from_map = false;  ///< vertices carry their displacement codes, for a Summed Height Test
+    datapath::MapFilter displacement_filter = datapath::MapFilter::nearest;
+    std::array<double, 3> light{0.3, -0.4, 0.866};  ///< direction towards the light, world space, of any length
+    double ambient = 0.2;                           ///< light on every surface, fraction of full scale
 };
 
-/// The inputs of the registers besides mesh and map.
-struct SceneSettings {
+/// The inputs of the registers besides mesh and map. Ranges: setting_keys.h.
+struct SceneSettings : SceneOptions {
     DisplacementSettings displacement;
     CameraSettings camera;
     TestSettings tests;
     FormatSettings formats;
-    LightSettings light;
     datapath::AddressMode address_u = datapath::AddressMode::clamp;  ///< outside the map's left and right border
     datapath::AddressMode address_v = datapath::AddressMode::clamp;  ///< outside its lower and upper border
-    datapath::Triangulation triangulation = datapath::Triangulation::shorter;
-    bool back_face_culling = false;
-    datapath::HeightTest height_test = datapath::HeightTest::summed_height;
-
-    bool families = false;            ///< Design::work is Work::family
-    bool final_edges = false;         ///< edges that are known not to split are not tested again
-    bool one_texel_from_map = false;  ///< vertices carry their displacement codes, for a Summed Height Test
-    datapath::MapFilter filter = datapath::MapFilter::nearest;
+    bool families = false;                                           ///< Design::work is Work::family
 };
 
 }  // namespace tessera

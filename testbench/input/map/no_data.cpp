@@ -147,8 +147,8 @@ struct Between {
 bool is_normalised(const HeightMap& map) {
     if (map.source_units != 1)
         return map.source_units <= 255;
-    const auto [low, high] = std::minmax_element(map.values.begin(), map.values.end());
-    return *low >= 0 && *high <= 1;
+    const auto [low, high] = map.extremes();
+    return low >= 0 && high <= 1;
 }
 
 }  // namespace

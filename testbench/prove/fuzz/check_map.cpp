@@ -18,9 +18,8 @@ void promise_complete(const HeightMap& map) {
             "the numbers of values and texels differ");
     promise(std::all_of(map.values.begin(), map.values.end(), [](float value) { return std::isfinite(value); }),
             "a value is not finite");
-    const auto [lowest, highest] = std::minmax_element(map.values.begin(), map.values.end());
-    promise(map.range_low <= static_cast<double>(*lowest) && static_cast<double>(*highest) <= map.range_high,
-            "a value is beyond the map's range");
+    const auto [lowest, highest] = map.extremes();
+    promise(map.range_low <= lowest && highest <= map.range_high, "a value is beyond the map's range");
     promise(std::isfinite(map.range_low) && std::isfinite(map.range_high), "the map's range is not finite");
     promise(std::isfinite(map.source_units) && map.source_units >= 1, "the source's unit is not 1 or more");
     for (const std::string& repair : map.repairs)

@@ -1,5 +1,6 @@
 #include "testbench/setup/prepare_scene.h"
 
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
@@ -10,6 +11,7 @@
 #include "testbench/common/error.h"
 #include "testbench/machine/inputs.h"
 #include "testbench/machine/machine_setup.h"
+#include "testbench/setup/setting_keys.h"
 
 using namespace tessera;
 using Catch::Contains;
@@ -31,7 +33,7 @@ Scene scene_of(const Inputs& inputs) {
     settings.camera = job.camera;
     settings.tests = job.tests;
     settings.formats = job.formats;
-    settings.light = {job.hardware.light, job.hardware.ambient};
+    static_cast<SceneOptions&>(settings) = job.hardware;
     return scene;
 }
 
@@ -63,7 +65,57 @@ std::vector<unsigned char> tables_of(const PreparedScene& scene) {
     return all;
 }
 
+/// Sets each number of one part of the settings below and above its declared range: each is refused, by its name.
+template <typename Group>
+class BeyondRanges {
+  public:
+    BeyondRanges(const char* part, Group& (*of)(SceneSettings&)) : part_(part), of_(of) {}
+
+    template <typename... Rest>
+    void add(const char* name, std::int64_t Group::*member, const char*, const KeyRange& range, Rest...) const {
+        for (const double value : {range.low - (range.or_zero ? range.low + 1 : 1), range.high + 1})
+            refused(name, [&](Group& group) { group.*member = static_cast<std::int64_t>(value); });
+    }
+    template <typename... Rest>
+    void add(const char* name, double Group::*member, const char*, const KeyRange& range, Rest...) const {
+        for (const double value : {range.low - 0.01 - std::abs(range.low), range.high + 0.01 + range.high})
+            refused(name, [&](Group& group) { group.*member = value; });
+    }
+    template <typename... Rest>
+    void add(const char* name, std::array<double, 3> Group::*member, const char*, const KeyRange& range,
+             Rest...) const {
+        for (const std::size_t k : {0u, 2u})
+            refused(name, [&](Group& group) { (group.*member)[k] = 2 * range.high; });
+    }
+    template <typename Choice, typename Owner>
+    void add(const char*, Choice Owner::*, const char*) const {}
+
+  private:
+    template <typename Spoil>
+    void refused(const std::string& name, const Spoil& spoil) const {
+        Scene scene = square();
+        spoil(of_(scene.settings));
+        INFO(part_ << name);
+        CHECK_THROWS_WITH(prepare(scene), Contains("`" + (part_ + name) + "` = ") && Contains("must be "));
+    }
+
+    std::string part_;
+    Group& (*of_)(SceneSettings&);
+};
+
 }  // namespace
+
+TEST_CASE("every number of a scene's settings is held to its range") {
+    declare_scene_keys(BeyondRanges<SceneOptions>("", [](SceneSettings& s) -> SceneOptions& { return s; }));
+    declare_displacement_keys(BeyondRanges<DisplacementSettings>(
+        "displacement.", [](SceneSettings & s) -> auto& { return s.displacement; }));
+    declare_camera_keys(BeyondRanges<CameraSettings>(
+        "camera.", [](SceneSettings & s) -> auto& { return s.camera; }));
+    declare_tests_keys(BeyondRanges<TestSettings>(
+        "tests.", [](SceneSettings & s) -> auto& { return s.tests; }));
+    declare_formats_keys(BeyondRanges<FormatSettings>(
+        "formats.", [](SceneSettings & s) -> auto& { return s.formats; }));
+}
 
 // The normals of the plane and the sphere are those that prepare() calculates.
 TEST_CASE("a scene of plain structs gives the registers, tables and triangles of the job") {
@@ -108,7 +160,7 @@ TEST_CASE("an invalid scene is refused with the value and a remedy") {
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     const Case cases[] = {
         {"`displacement.scale` is not set", [](Scene& s) { s.settings.displacement = {}; }},
-        {"`camera.eye` is not set, or not finite: set three numbers",
+        {"`camera.eye` is not set, or not a number: set it",
          [](Scene& s) { s.settings.camera.eye = automatic_vector; }},
         {"`camera.near_plane` is not set", [](Scene& s) { s.settings.camera.near_plane = automatic; }},
         {"are the same point", [](Scene& s) { s.settings.camera.target = s.settings.camera.eye; }},
@@ -117,7 +169,7 @@ TEST_CASE("an invalid scene is refused with the value and a remedy") {
              s.settings.camera.up = {0, 2, -1.5};
          }},
         {"`formats.position_bits` = 40: must be 8 to 32", [](Scene& s) { s.settings.formats.position_bits = 40; }},
-        {"`formats.tex_coord_fraction` = 3: must be 0 to 2",
+        {"`formats.tex_coord_fraction` = 3: must be -1 to 2",
          [](Scene& s) { s.settings.formats.tex_coord_fraction = 3; }},
         {"`tests.normal_threshold` is not set, or not a number",
          [](Scene& s) { s.settings.tests.normal_threshold = nan; }},
@@ -126,7 +178,7 @@ TEST_CASE("an invalid scene is refused with the value and a remedy") {
              s.settings.formats.generation_bits = 3;
              s.settings.tests.generation_limit = 9;
          }},
-        {"`light.direction` has no direction", [](Scene& s) { s.settings.light.direction = {}; }},
+        {"`light` has no direction", [](Scene& s) { s.settings.light = {}; }},
         {"vertices[2] has a value that is not finite", [](Scene& s) { s.vertices[2].position[1] = nan; }},
         {"triangles[1] names vertex 4 of 4", [](Scene& s) { s.triangles[1][2] = 4; }},
         {"none of the 2 triangles has an area",
