@@ -12,22 +12,26 @@
 
 namespace tessera {
 
-/// The numbers of units in waveforms. They are the same in every design, so that waveforms/units.txt can name them.
+/// The numbers by which waveforms show units.
 class UnitNumbers {
   public:
     struct Entry {
         unsigned number;
-        const char* name;  ///< SystemC name without that of the top module
+        std::string name;  ///< SystemC name without that of the top module
+        std::string
+            shown;  ///< in waveforms/units.txt: without that of its Tessellation Tests, _1, _2, ... from the second on
     };
-    static const std::vector<Entry>& all();
     static constexpr unsigned bits = 7;
     static constexpr unsigned nobody = 0;
-    static constexpr unsigned other = 127;  ///< not in all()
+    static constexpr unsigned other = 127;  ///< not numbered
+
+    explicit UnitNumbers(const std::vector<Entry>& all) : all_(all) {}
 
     /// The number of a unit, by its name. The name is looked up once per object.
     unsigned of(const sc_core::sc_object* object);
 
   private:
+    const std::vector<Entry>& all_;
     std::unordered_map<const sc_core::sc_object*, unsigned> known_;
 };
 

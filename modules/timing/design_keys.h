@@ -3,6 +3,7 @@
 #include <string>
 #include <utility>
 
+#include "modules/timing/all_units.h"
 #include "modules/timing/design_options.h"
 #include "modules/timing/timing.h"
 
@@ -26,29 +27,34 @@ struct DesignName {
     DesignName(const char* its_member) : DesignName(std::string(its_member)) {}  // NOLINT: likewise
 };
 
-inline constexpr unsigned most_cycles = 1000000;  // of a latency or interval
-inline constexpr unsigned most_places = 65536;    // of a buffer
 inline constexpr unsigned most_triangles = 2147483647;
 
-/// Declares the three timing parameters of a unit.
+/// Declares a unit's timing parameters.
 template <typename Keys>
-void declare_unit_keys(const Keys& key, const std::string& leaf, const std::string& name, UnitTiming Timing::*unit,
-                       const std::string& besides_latency = "",
-                       const std::string& buffered = "capacity of its input buffer") {
-    key.add_number(
-        leaf + ".latency", [unit](auto& t) -> auto& { return (t.*unit).latency; }, "cycles", {1, most_cycles},
-        name + ": latency, from an item's start to its result" + besides_latency);
-    key.add_number(
-        leaf + ".interval", [unit](auto& t) -> auto& { return (t.*unit).interval; }, "cycles", {1, most_cycles},
-        name + ": initiation interval");
-    key.add_number(
-        leaf + ".buffer", [unit](auto& t) -> auto& { return (t.*unit).buffer; }, "items", {1, most_places},
-        name + ": " + buffered);
+void declare_unit_keys(const Keys& key, const UnitSpec& spec) {
+    const std::string name(spec.name), title = spec.title;
+    if (const auto unit = spec.timing; unit != nullptr) {
+        key.add_number(
+            name + ".latency", [unit](auto& t) -> auto& { return (t.*unit).latency; }, "cycles", {1, most_cycles},
+            title + ": latency, from an item's start to its result" +
+                (spec.reads_tables ? ", not including table reads" : ""));
+        key.add_number(
+            name + ".interval", [unit](auto& t) -> auto& { return (t.*unit).interval; }, "cycles", {1, most_cycles},
+            title + ": initiation interval");
+        key.add_number(
+            name + ".buffer", [unit](auto& t) -> auto& { return (t.*unit).buffer; }, "items", {1, most_places},
+            title + ": " + spec.buffer);
+    }
+    if (const UnitParameter& further = spec.further; further.name != nullptr)
+        key.add_number(
+            further.name, [member = further.member](auto& t) -> auto& { return t.*member; }, further.unit,
+            {further.least, further.most}, further.meaning);
 }
 
 template <typename Keys>
-void declare_memory_keys(const Keys& key, const std::string& leaf, const std::string& name,
-                         MemoryTiming Timing::*memory) {
+void declare_memory_keys(const Keys& key, const MemorySpec& spec) {
+    const std::string leaf(spec.name), name = spec.title;
+    const auto memory = spec.timing;
     key.add_number(
         leaf + ".ports", [memory](auto& t) -> auto& { return (t.*memory).ports; }, "entries per cycle", {1, 64},
         name + ": ports of each bank");
@@ -80,6 +86,16 @@ void declare_memory_keys(const Keys& key, const std::string& leaf, const std::st
         leaf + ".cache.fills", [memory](auto& t) -> auto& { return (t.*memory).cache.fills; }, "lines",
         {1, most_places},
         name + ": largest number of outstanding fills of its cache, and of requests that wait for them");
+    if (!spec.rectangles)
+        return;
+    key.template add_choice<Interleave>(
+        leaf + ".interleave", [memory](auto& t) -> auto& { return (t.*memory).interleave; },
+        name +
+            ": how entries are assigned to banks. entry: one after another; xor: by exclusive ORs of bits "
+            "of column and row (the number of banks is then a power of two)");
+    key.add_number(
+        leaf + ".window", [memory](auto& t) -> auto& { return (t.*memory).window; }, "rectangles", {0, most_places},
+        name + ": rectangles whose reads may overlap; 0: a rectangle is read when all of its banks are free");
 }
 
 /// Declares the members of Timing as keys of a job file, or as parameters of a configuration of another kind, with one
@@ -92,48 +108,10 @@ void declare_timing_keys(const Keys& key) {
     key.add_number(
         {"cycle_picoseconds", "clock_period"}, [](auto& t) -> auto& { return t.cycle_picoseconds; }, "picoseconds",
         {1, 1000000000}, "Clock period");
-    declare_unit_keys(key, "get_triangle", "Get Triangle", &Timing::get_triangle);
-    declare_unit_keys(key, "calculate_new_p", "Calculate New P", &Timing::calculate_new_p);
-    declare_unit_keys(key, "displace_vertex", "Displace Vertex", &Timing::displace_vertex,
-                      ", not including table reads");
-    declare_unit_keys(key, "transform", "Transform", &Timing::transform);
-    declare_unit_keys(key, "calculate_new_u", "Calculate New U", &Timing::calculate_new_u);
-    declare_unit_keys(key, "tex_coord_test", "Tex Coord Test", &Timing::tex_coord_test);
-    declare_unit_keys(key, "summed_height_test", "Summed Height Test", &Timing::summed_height_test,
-                      ", not including table reads");
-    declare_unit_keys(key, "rank_test", "Rank Test", &Timing::rank_test, ", not including table reads");
-    declare_unit_keys(key, "curvature_test", "Curvature Test", &Timing::curvature_test, ", not including table reads");
-    declare_unit_keys(key, "mipmap_test", "Mipmap Test", &Timing::mipmap_test, ", not including table reads");
-    declare_unit_keys(key, "normal_test", "Normal Test", &Timing::normal_test, ", not including table reads");
-    key.add_number(
-        "highlight_test_latency", [](auto& t) -> auto& { return t.highlight_test_latency; }, "cycles", {0, most_cycles},
-        "Highlight Test, if present: added to the Normal Test's latency");
-    declare_unit_keys(key, "view_test", "View Test", &Timing::view_test);
-    key.add_number(
-        "results_buffer", [](auto& t) -> auto& { return t.results_buffer; }, "edges", {1, most_places},
-        "Capacity of each input buffer of Collect Tests: results of one test that wait for the other three");
-    key.add_number(
-        "edges_in_sequence", [](auto& t) -> auto& { return t.edges_in_sequence; }, "edges", {1, most_places},
-        "With hardware.test_order = \"cheap_first\": capacity of Sequence Tests, in edges whose cheap tests are done");
-    declare_unit_keys(key, "pass_or_tessellate", "Pass or Tessellate", &Timing::pass_or_tessellate, "",
-                      "triangles that wait for parts from either branch");
-    declare_unit_keys(key, "tessellation", "Tessellation", &Timing::tessellation);
-    declare_unit_keys(key, "triangle_queue", "Triangle Queue", &Timing::triangle_queue);
-    declare_unit_keys(key, "lighting", "Lighting", &Timing::lighting);
-    declare_memory_keys(key, "displacement_map", "Displacement map", &Timing::displacement_map);
-    declare_memory_keys(key, "normal_map", "Normal map", &Timing::normal_map);
-    declare_memory_keys(key, "summed_height_table", "Summed Height Table", &Timing::summed_height_table);
-    key.template add_choice<Interleave>(
-        "summed_height_table.interleave", [](auto& t) -> auto& { return t.summed_height_table.interleave; },
-        "Summed Height Table: how entries are assigned to banks. entry: one after another; xor: by exclusive ORs of bits "
-        "of column and row (the number of banks is then a power of two)");
-    key.add_number(
-        "summed_height_table.window", [](auto& t) -> auto& { return t.summed_height_table.window; }, "rectangles",
-        {0, most_places},
-        "Summed Height Table: rectangles whose reads may overlap; 0: a rectangle is read when all of its banks are free");
-    declare_memory_keys(key, "rank_table", "Rank Table", &Timing::rank_table);
-    declare_memory_keys(key, "curvature_table", "Curvature Table", &Timing::curvature_table);
-    declare_memory_keys(key, "mipmap_table", "Mipmap Table", &Timing::mipmap_table);
+    for (const UnitSpec& unit : all_units)
+        declare_unit_keys(key, unit);
+    for (const MemorySpec& memory : all_table_memories)
+        declare_memory_keys(key, memory);
     key.add_number(
         {"off_chip_memory.latency", "off_chip_latency"}, [](auto& t) -> auto& { return t.off_chip_memory.latency; },
         "cycles", {0, most_places}, "Off-chip memory: latency, from a request's last byte to its answer");

@@ -5,6 +5,9 @@
 
 namespace tessera {
 
+inline constexpr unsigned most_cycles = 1000000;  ///< of a latency or interval
+inline constexpr unsigned most_places = 65536;    ///< of a buffer
+
 /// A unit's pipeline, in cycles.
 struct UnitTiming {
     unsigned latency = 1;   ///< from an item's start to its result, at least 1

@@ -10,6 +10,7 @@
 #include "modules/stage/signals.h"
 #include "modules/timing/activity.h"
 #include "modules/timing/cycle_scheduler.h"
+#include "modules/unit_numbers.h"
 #include "testbench/output/trace/timeline_writer.h"
 #include "testbench/output/trace/trace_window.h"
 #include "testbench/output/trace/vcd_writer.h"
@@ -74,7 +75,7 @@ class Recorder : public CycleObserver {
     TimelineWriter* timeline_;
     TraceWindow window_;
     bool show_every_unit_;
-    UnitNumbers numbers_;
+    UnitNumbers numbers_{numbered_units()};
     VcdWriter::Signal cycle_signal_ = 0;
     VcdWriter::Signal passes_signal_ = 0;
     std::vector<TracedUnit> traced_;

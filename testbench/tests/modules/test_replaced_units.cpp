@@ -41,7 +41,7 @@ class HalvedHeightTest : public SummedHeightTest {
 };
 
 class HalvedHeights : public UnitFactory {
-    std::unique_ptr<SummedHeightTest> summed_height_test(Name name, const UnitContext& context) override {
+    std::unique_ptr<HeightTestUnit> height_test(Name name, const UnitContext& context) override {
         return std::make_unique<HalvedHeightTest>(name, context);
     }
 };
@@ -147,7 +147,7 @@ class PackedDisplaceVertices : public UnitFactory {
 
 /// Stalls only the Summed Height Test.
 class StalledHeights : public UnitFactory {
-    std::unique_ptr<SummedHeightTest> summed_height_test(Name name, const UnitContext& context) override {
+    std::unique_ptr<HeightTestUnit> height_test(Name name, const UnitContext& context) override {
         Design design = context.design;
         design.timing.stalls = {7, 300, 100};
         return std::make_unique<SummedHeightTest>(name, UnitContext{context.clock, context.registers, design});
@@ -160,7 +160,7 @@ class OtherThreshold : public UnitFactory {
     explicit OtherThreshold(const datapath::Registers& registers) : registers_(registers) {}
 
   private:
-    std::unique_ptr<SummedHeightTest> summed_height_test(Name name, const UnitContext& context) override {
+    std::unique_ptr<HeightTestUnit> height_test(Name name, const UnitContext& context) override {
         return std::make_unique<SummedHeightTest>(name, UnitContext{context.clock, registers_, context.design});
     }
 

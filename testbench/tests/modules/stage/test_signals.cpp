@@ -34,7 +34,8 @@ struct Vectors {
 
 TEST_CASE("signals are found by scope, name and component, in another order than declared") {
     Values sink;
-    UnitNumbers numbers;
+    const std::vector<UnitNumbers::Entry> none;
+    UnitNumbers numbers(none);
     Signals signals(sink, numbers, "unit");
     const auto show = [&](bool backwards, const Vectors& vectors, std::uint64_t count) {
         if (!backwards)
@@ -62,7 +63,8 @@ TEST_CASE("signals are found by scope, name and component, in another order than
 
 TEST_CASE("a value of a signal that was not declared is an error that names the unit and the signal") {
     Values sink;
-    UnitNumbers numbers;
+    const std::vector<UnitNumbers::Entry> none;
+    UnitNumbers numbers(none);
     Signals signals(sink, numbers, "unit");
     signals.begin(true);
     signals.value("count", 8, 0);

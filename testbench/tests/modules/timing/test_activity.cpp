@@ -7,8 +7,11 @@
 #include "modules/stage/per_triangle.h"
 #include "modules/stage/signals.h"
 #include "modules/timing/activity.h"
+#include "modules/timing/all_units.h"
 #include "modules/timing/level_history.h"
+#include "modules/unit_numbers.h"
 #include "modules/units/triangle_store.h"
+#include "testbench/tests/support/expect_section.h"
 #include "testbench/tests/support/timed_modules.h"
 
 // The records that units keep of their activity and their items.
@@ -203,6 +206,14 @@ TEST_CASE("per triangle: entries are found by tag, closed in any order, and the 
     CHECK(kept.find_or_open(7) == 0);  // opened again
 }
 
+TEST_CASE("the table of units in modules/README.md is the units' own") {
+    std::string rows;
+    for (const UnitSpec& unit : all_units)
+        rows += std::string("| ") + unit.title + " | " + unit.work + " | " + unit.arithmetic + " |\n";
+    expect_section("modules/README.md", "| unit | work | arithmetic |\n| --- | --- | --- |\n", rows,
+                   "TESSERA_WRITE_UNITS", SectionEnd::empty_line);
+}
+
 TEST_CASE("unit numbers: a machine's units have their own, any other object is other, null is nobody") {
     Neighbour transform("transform"), stranger("stranger");
     struct Machine : sc_core::sc_module {
@@ -216,12 +227,12 @@ TEST_CASE("unit numbers: a machine's units have their own, any other object is o
         explicit Machine(const sc_core::sc_module_name& name) : sc_module(name) {}
     } machine("machine");
     const auto number_of = [](const std::string& name) {
-        for (const UnitNumbers::Entry& entry : UnitNumbers::all())
+        for (const UnitNumbers::Entry& entry : numbered_units())
             if (entry.name == name)
                 return entry.number;
         return ~0u;
     };
-    UnitNumbers numbers;
+    UnitNumbers numbers(numbered_units());
     CHECK(numbers.of(nullptr) == UnitNumbers::nobody);
     CHECK(numbers.of(&transform) == number_of("transform"));
     CHECK(numbers.of(&machine.lighting) == number_of("lighting"));

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cctype>
@@ -7,12 +8,15 @@
 #include <regex>
 #include <set>
 
+#include "modules/unit_numbers.h"
 #include "testbench/output/trace/recorder.h"
 #include "testbench/tests/output/trace/vcd_file.h"
+#include "testbench/tests/support/expect_section.h"
 #include "testbench/tests/support/program_runner.h"
 
 using namespace tessera;
 using Catch::Contains;
+using tessera::testing::expect_section;
 namespace fs = std::filesystem;
 
 namespace {
@@ -129,18 +133,13 @@ TEST_CASE("filters name every number as in the code") {
     for (const State state : {State::starved, State::busy, State::waiting_for_memory, State::blocked})
         CHECK(state_names.at(static_cast<unsigned>(state)) == state_name(state));
 
-    std::map<unsigned, std::string> units = read_filter("units.txt");
-    CHECK(units.size() == UnitNumbers::all().size() + 2);
-    CHECK(units.at(UnitNumbers::nobody) == "-");
-    CHECK(units.at(UnitNumbers::other) == "other");
-    for (const UnitNumbers::Entry& entry : UnitNumbers::all()) {
-        const std::string name = entry.name;
-        std::string shown = name.substr(name.rfind('.') + 1);
-        if (name.rfind("tessellation_tests_", 0) == 0 && name[19] != '0')
-            shown += std::string("_") + name[19];
-        CHECK(units.at(entry.number) == shown);
-        CHECK(entry.number < (1u << UnitNumbers::bits));
+    std::string units = fmt::format("{:02X} -\n", UnitNumbers::nobody);
+    for (const UnitNumbers::Entry& entry : numbered_units()) {
+        units += fmt::format("{:02X} {}\n", entry.number, entry.shown);
+        CHECK(entry.number < UnitNumbers::other);
     }
+    units += fmt::format("{:02X} other\n", UnitNumbers::other);
+    expect_section("waveforms/units.txt", "or Normal Test\n", units, "TESSERA_WRITE_UNITS");
 
     const std::map<unsigned, std::string> parts = read_filter("parts.txt");
     CHECK(parts.size() == last_edge_part + 1);
@@ -174,7 +173,7 @@ TEST_CASE("every unit has its own number in any design") {
         std::smatch found;
         REQUIRE(std::regex_search(end.err, found, std::regex("the units are (.*)")));
         std::set<std::string> numbered;
-        for (const UnitNumbers::Entry& entry : UnitNumbers::all())
+        for (const UnitNumbers::Entry& entry : numbered_units())
             numbered.insert(entry.name);
         const std::string list = found[1];
         const std::regex word("[\\w.]+");

@@ -1,0 +1,48 @@
+#include "modules/unit_numbers.h"
+
+#include <string>
+
+#include "modules/timing/all_units.h"
+
+namespace tessera {
+
+namespace {
+
+std::vector<UnitNumbers::Entry> number_units() {
+    constexpr unsigned most_tests_units = 3, numbered_lanes = 4;
+    std::vector<UnitNumbers::Entry> entries;
+    const auto add = [&](const std::string& name, const std::string& shown) {
+        entries.push_back({static_cast<unsigned>(entries.size() + 1), name, shown});
+    };
+    const auto numbered = [](const char* name, unsigned copy) {
+        return std::string(name) + (copy == 0 ? "" : '_' + std::to_string(copy));
+    };
+    const auto add_tests = [&](unsigned tests_unit, unsigned lane) {
+        const std::string tests = "tessellation_tests_" + std::to_string(tests_unit) + '.';
+        for (const UnitSpec& unit : all_units)
+            if (unit.per == Per::lane || (unit.per == Per::tests_unit && lane == 0))
+                add(tests + numbered(unit.name, lane), numbered(unit.name, tests_unit + lane));
+    };
+    for (const UnitSpec& unit : all_units)
+        if (unit.per == Per::machine)
+            add(unit.name, unit.name);
+    for (unsigned k = 0; k < most_tests_units; ++k)
+        add_tests(k, 0);
+    for (unsigned lane = 1; lane < numbered_lanes; ++lane)
+        add_tests(0, lane);
+    for (const char* const suffix : {"", "_cache"})
+        for (const MemorySpec& memory : all_table_memories)
+            add(std::string(memory.name) + suffix, std::string(memory.name) + suffix);
+    for (const char* const other : {"displacement_map_for_tests", "off_chip_memory", "host", "rasteriser"})
+        add(other, other);
+    return entries;
+}
+
+}  // namespace
+
+const std::vector<UnitNumbers::Entry>& numbered_units() {
+    static const std::vector<UnitNumbers::Entry> entries = number_units();
+    return entries;
+}
+
+}  // namespace tessera
