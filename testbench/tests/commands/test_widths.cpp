@@ -119,7 +119,7 @@ TEST_CASE("widths: wrong usage is refused in one line, and nothing is written") 
     CHECK_THAT(sweep_refused({"--flips", "nan"}), Contains("--flips"));
     CHECK_THAT(sweep_refused({"--error", "-1"}), Contains("--error"));
     CHECK_THAT(sweep_refused({"--error", "inf"}), Contains("--error"));
-    CHECK_THAT(sweep_refused({"--jobs", "0"}), Contains("--jobs: Value 0 not in range 1 to 64"));
+    CHECK_THAT(sweep_refused({"--jobs", "0"}), Contains("--jobs: Value 0 not in range") && Contains("64"));
     CHECK_THAT(sweep_refused({"--output", ""}), Contains("--output"));
     CHECK_THAT(sweep_refused({"--output", "absent/w.csv"}), Contains("absent"));
     CHECK_THAT(sweep_refused({"absent.toml"}), Contains("no such job file"));
