@@ -213,3 +213,22 @@ TEST_CASE("triangles without area are left out of a scene, with a remark") {
     CHECK(prepared.base_triangles.size() == 2);
     CHECK(prepared.remarks.back() == "triangles dropped because they have no area: 1");
 }
+
+TEST_CASE("a Rank Table for a view is that of its displacement scale; bounds on the surface are those of every scale") {
+    const auto tables = [](RankView view, double scale) {
+        Job job;
+        job.mesh.source = MeshSource::lattice;
+        job.mesh.spacing = 16;
+        job.map.width = job.map.height = 48;
+        job.hardware.height_test = HeightTest::rank;
+        job.hardware.test_order = TestOrder::cheap_first;
+        job.tests.rank_view = view;
+        job.formats.bound_bits = 16;
+        job.displacement.scale = scale;
+        const Inputs inputs = load_inputs(job);
+        return make_setup(inputs.resolved.job, inputs.mesh, inputs.map).rank_tables;
+    };
+    CHECK(tables(RankView::none, 0.1).bound == tables(RankView::none, 0.4).bound);
+    CHECK(tables(RankView::per_point, 0.1).bound == tables(RankView::per_point, 0.4).bound);
+    CHECK(tables(RankView::per_point, 0.1).radius != tables(RankView::per_point, 0.4).radius);
+}
