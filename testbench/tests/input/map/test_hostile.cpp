@@ -66,14 +66,18 @@ void check_refusal(const Outcome& outcome, const std::filesystem::path& path) {
 
 constexpr int damaged_files = 200;
 
-// Truncates half of the files and changes one to three bytes of the others; returns how many were refused. Each must be
-// refused in one line or give a whole map, and a truncated one only with a remark.
-int refused_damage(const TestFolder& folder, const std::string& good) {
+struct Damage {
+    int refused = 0, remarked = 0;
+};
+
+// Truncates half of the files and changes one to three bytes of the others; returns how many were refused, and how many
+// gave a map with a remark. Each must be refused in one line or give a whole map, and a truncated one only with a remark.
+Damage read_damaged(const TestFolder& folder, const std::string& good) {
     Random random(1);
     const auto place = [&] {
         return static_cast<std::size_t>(random.integer(0, static_cast<std::int64_t>(good.size()) - 1));
     };
-    int refused = 0;
+    Damage damage;
     for (int k = 0; k < damaged_files; ++k) {
         std::string bad = good;
         const bool cut = k % 2 == 0;
@@ -87,12 +91,13 @@ int refused_damage(const TestFolder& folder, const std::string& good) {
         INFO("damaged file " << k << " of " << bad.size() << " bytes: " << outcome.message);
         CHECK_FALSE((cut && outcome.kind == Outcome::Kind::loaded));
         CHECK_NOTHROW(fuzz::check_map(bad));
+        damage.remarked += outcome.kind == Outcome::Kind::loaded_with_remark;
         if (outcome.kind == Outcome::Kind::refused) {
-            ++refused;
+            ++damage.refused;
             check_refusal(outcome, folder / "damaged");
         }
     }
-    return refused;
+    return damage;
 }
 
 }  // namespace
@@ -133,10 +138,10 @@ TEST_CASE("EXR files cut off or with changed bytes are read or refused") {
     image.compression = compression;
     write_exr(folder / "good.exr", image);
     CHECK(outcome_of(folder / "good.exr").kind != Outcome::Kind::refused);
-    CHECK(refused_damage(folder, read_all(folder / "good.exr")) > damaged_files / 2);
+    CHECK(read_damaged(folder, read_all(folder / "good.exr")).refused > damaged_files / 2);
 }
 
-TEST_CASE("PNG files cut off or with changed bytes are all refused") {
+TEST_CASE("PNG files cut off or with changed bytes are all noticed") {
     const TestFolder folder;
     const auto interlaced = GENERATE(false, true);
     const auto type = GENERATE(PNG_COLOR_TYPE_GRAY, PNG_COLOR_TYPE_PALETTE);
@@ -145,15 +150,17 @@ TEST_CASE("PNG files cut off or with changed bytes are all refused") {
         image.palette = {1, 2, 3, 4, 5, 6};
     write_png(folder / "good.png", image);
     CHECK(outcome_of(folder / "good.png").kind != Outcome::Kind::refused);
-    // The checksums detect every damage.
-    CHECK(refused_damage(folder, read_all(folder / "good.png")) == damaged_files);
+    // The checksums detect every damage. libpng 1.6.48 reads a file whose last chunk alone, which is empty, has a wrong one.
+    const Damage damage = read_damaged(folder, read_all(folder / "good.png"));
+    CHECK(damage.refused + damage.remarked >= damaged_files);
+    CHECK(damage.refused > damaged_files * 9 / 10);
 }
 
 TEST_CASE("PGM files cut off or with changed bytes are read or refused") {
     const TestFolder folder;
     const auto good =
         GENERATE("P5\n# comment\n3 3\n65535\n0123456789abcdefgh"s, "P2\n3 2 # comment\n100\n10 20 30\n40 50 60\n"s);
-    CHECK(refused_damage(folder, good) > damaged_files / 2);
+    CHECK(read_damaged(folder, good).refused > damaged_files / 2);
 }
 
 namespace {
