@@ -1,5 +1,6 @@
 #include "testbench/prove/engines/scheduled_case.h"
 
+#include "modules/timing/all_units.h"
 #include "testbench/common/random.h"
 
 namespace tessera {
@@ -12,20 +13,15 @@ void choose_timing(Random& random, Timing& timing) {
     const auto latency = [&] { return random.natural(1, slow ? 60 : 6); };
     const auto buffer = [&] { return random.natural(1, deep ? 12 : 2); };
     if (random.chance(60))
-        for (UnitTiming* unit :
-             {&timing.get_triangle, &timing.calculate_new_p, &timing.displace_vertex, &timing.transform,
-              &timing.calculate_new_u, &timing.tex_coord_test, &timing.summed_height_test, &timing.rank_test,
-              &timing.curvature_test, &timing.mipmap_test, &timing.normal_test, &timing.view_test,
-              &timing.pass_or_tessellate, &timing.tessellation, &timing.triangle_queue, &timing.lighting})
-            if (random.coin())
-                *unit = {latency(), random.natural(1, 5), buffer()};
+        for (const UnitSpec& unit : all_units)
+            if (unit.timing != nullptr && random.coin())
+                timing.*unit.timing = {latency(), random.natural(1, 5), buffer()};
     timing.results_buffer = buffer();
-    for (MemoryTiming* memory : {&timing.displacement_map, &timing.normal_map, &timing.summed_height_table,
-                                 &timing.rank_table, &timing.curvature_table, &timing.mipmap_table}) {
+    for (const MemorySpec& memory : all_table_memories) {
         if (random.coin())
-            *memory = {random.natural(1, 4), 1u << random.natural(0, 5), random.natural(0, slow ? 60 : 3),
-                       random.natural(0, 8), buffer()};
-        memory->cache = {};
+            timing.*memory.timing = {random.natural(1, 4), 1u << random.natural(0, 5), random.natural(0, slow ? 60 : 3),
+                                     random.natural(0, 8), buffer()};
+        (timing.*memory.timing).cache = {};
     }
     if (random.coin()) {
         timing.summed_height_table.window = random.natural(0, 12);

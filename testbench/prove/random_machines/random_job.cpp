@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "modules/timing/all_units.h"
+
 namespace tessera {
 
 namespace {
@@ -87,18 +89,14 @@ void choose_hardware(Random& random, Job::Hardware& hardware) {
 void choose_timing(Random& random, Timing& timing) {
     const auto any = [&](unsigned low, unsigned high) { return random.natural(low, high); };
     if (random.chance(60))
-        for (UnitTiming* unit :
-             {&timing.get_triangle, &timing.calculate_new_p, &timing.displace_vertex, &timing.transform,
-              &timing.calculate_new_u, &timing.tex_coord_test, &timing.summed_height_test, &timing.normal_test,
-              &timing.view_test, &timing.pass_or_tessellate, &timing.tessellation, &timing.triangle_queue,
-              &timing.lighting})
-            if (random.chance(40))
-                *unit = {any(1, 30), any(1, 4), any(1, 9)};
+        for (const UnitSpec& unit : all_units)
+            if (unit.timing != nullptr && random.chance(40))
+                timing.*unit.timing = {any(1, 30), any(1, 4), any(1, 9)};
     timing.highlight_test_latency = any(0, 5);
     timing.results_buffer = any(1, 6);
-    for (MemoryTiming* memory : {&timing.displacement_map, &timing.normal_map, &timing.summed_height_table})
+    for (const MemorySpec& memory : all_table_memories)
         if (random.chance(50))
-            *memory = {any(1, 8), any(1, 4), any(0, 40), any(0, 8), any(1, 4)};
+            timing.*memory.timing = {any(1, 8), any(1, 4), any(0, 40), any(0, 8), any(1, 4)};
     if (random.chance(50))
         timing.off_chip_memory = {any(0, 120), any(1, 64), any(1, 8)};
     if (random.chance(40))
@@ -130,18 +128,12 @@ void choose_mesh_options(Random& random, Job& job) {
     if (random.chance(40)) {
         job.hardware.height_test = HeightTest::curvature;
         job.tests.curvature_threshold = random.one_of({0.0, 0.02, 0.3, 3.0});
-        job.timing.curvature_test = {random.natural(1, 9), random.natural(1, 3), random.natural(1, 5)};
-        job.timing.curvature_table = {random.natural(1, 4), random.natural(1, 4), random.natural(0, 20), 0,
-                                      random.natural(1, 4)};
         return;
     }
     if (random.chance(30)) {
         job.hardware.height_test = HeightTest::mipmap;
         job.tests.mipmap_filter = random.one_of({MipmapFilter::mean, MipmapFilter::maximum});
         job.tests.mipmap_threshold = random.one_of({0.0, 0.002, 0.05});
-        job.timing.mipmap_test = {random.natural(1, 9), random.natural(1, 3), random.natural(1, 5)};
-        job.timing.mipmap_table = {random.natural(1, 4), random.natural(1, 4), random.natural(0, 20), 0,
-                                   random.natural(1, 4)};
         return;
     }
     job.hardware.height_test = HeightTest::rank;
@@ -157,9 +149,6 @@ void choose_mesh_options(Random& random, Job& job) {
         job.tests.rank_threshold = random.one_of({0.5, 10.0, 1000.0});
         job.tests.bound_threshold = random.one_of({0.5, 4.0, 30.0});
     }
-    job.timing.rank_test = {random.natural(1, 9), random.natural(1, 3), random.natural(1, 5)};
-    job.timing.rank_table = {random.natural(1, 4), random.natural(1, 4), random.natural(0, 20), 0,
-                             random.natural(1, 4)};
 }
 
 void choose_evaluations(Random& random, Job& job) {
@@ -190,10 +179,9 @@ void choose_evaluations(Random& random, Job& job) {
         job.hardware.machines = random.integer(2, 4);
     if (random.chance(60))
         return;
-    for (MemoryTiming* memory : {&job.timing.displacement_map, &job.timing.normal_map, &table, &job.timing.rank_table,
-                                 &job.timing.curvature_table, &job.timing.mipmap_table})
-        memory->cache = {random.one_of({0U, 1U, 300U, 4096U}), random.one_of({1U, 16U, 64U, 100U}),
-                         random.natural(1, 4), random.natural(1, 20)};
+    for (const MemorySpec& memory : all_table_memories)
+        (job.timing.*memory.timing).cache = {random.one_of({0U, 1U, 300U, 4096U}), random.one_of({1U, 16U, 64U, 100U}),
+                                             random.natural(1, 4), random.natural(1, 20)};
 }
 
 }  // namespace tessera
