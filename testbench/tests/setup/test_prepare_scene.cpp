@@ -214,7 +214,7 @@ TEST_CASE("triangles without area are left out of a scene, with a remark") {
     CHECK(prepared.remarks.back() == "triangles dropped because they have no area: 1");
 }
 
-TEST_CASE("a Rank Table for a view is that of its displacement scale; bounds on the surface are those of every scale") {
+TEST_CASE("a Rank Table for a view is that of its displacement scale, bounds on the surface are those of every scale") {
     const auto tables = [](RankView view, double scale) {
         Job job;
         job.mesh.source = MeshSource::lattice;
