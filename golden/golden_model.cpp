@@ -128,8 +128,8 @@ Vertex complete_base_vertex(const Vertex& base, const Map& map, const Parameters
 
 Insertion insert_vertex(const Vertex& i, const Vertex& j, const Map& map, const Parameters& parameters) {
     const auto mean = [&](const glm::dvec3& a, const glm::dvec3& b) {
-        const glm::dvec3 half = (a + b) / 2.0, size = 2.0 * glm::abs(half);
-        return normalise(std::max({size.x, size.y, size.z}) < parameters.direction_step ? glm::dvec3(0) : half);
+        const glm::dvec3 sum = a + b, size = glm::abs(sum);
+        return normalise(std::max({size.x, size.y, size.z}) < parameters.direction_step ? glm::dvec3(0) : sum / 2.0);
     };
     const Normalised normal = mean(i.normal, j.normal);
     const Normalised tangent = mean(i.tangent, j.tangent);

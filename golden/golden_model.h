@@ -63,8 +63,8 @@ struct Parameters {
     /// Inserted texture coordinates are rounded down to multiples of this, in texels; 0: not rounded. Nothing else is
     /// rounded. At a texel's border the smallest difference in t selects another texel, so t must match the hardware's.
     double texture_step = 0;
-    /// The mean of two directions is 0 if no component reaches half of this; 0: only if it is 0. The mean of opposite
-    /// normals has no direction but that of its rounding error.
+    /// The mean of two directions is 0 if all its components are below half of this; 0: no such limit. The mean of
+    /// opposite normals has no direction but that of its rounding error.
     double direction_step = 0;
 
     /// World to screen: with p = (P', 1) and w = dot(row_w, p), screen = (dot(row_x, p), dot(row_y, p)) / w

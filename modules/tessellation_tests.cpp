@@ -2,6 +2,8 @@
 
 #include <string>
 
+#include "modules/timing/height_test_kind.h"
+
 namespace tessera {
 
 TessellationTests::Units TessellationTests::make(const UnitContext& context, UnitFactory& factory, unsigned number) {

@@ -1,5 +1,4 @@
 #pragma once
-#include <cstddef>
 #include <memory>
 
 #include "modules/memories/off_chip_memory.h"
@@ -62,7 +61,13 @@ class UnitFactory {
     }
     /// The design's height test (datapath::Formats::height_test).
     virtual std::unique_ptr<HeightTestUnit> height_test(Name name, const UnitContext& context) {
-        return make_one_of<SummedHeightTest, RankTest, CurvatureTest, MipmapTest>(name, context);
+        switch (context.registers.formats.height_test) {
+            case datapath::HeightTest::rank: return std::make_unique<RankTest>(name, context);
+            case datapath::HeightTest::curvature: return std::make_unique<CurvatureTest>(name, context);
+            case datapath::HeightTest::mipmap: return std::make_unique<MipmapTest>(name, context);
+            case datapath::HeightTest::summed_height: break;
+        }
+        return std::make_unique<SummedHeightTest>(name, context);
     }
     virtual std::unique_ptr<NormalTest> normal_test(Name name, const UnitContext& context, Parts takes) {
         return std::make_unique<NormalTest>(name, context, takes);
@@ -107,18 +112,6 @@ class UnitFactory {
     virtual void join(MemoryPort& port, TableMemory& memory) { port.bind(memory); }
     virtual void join(MemoryPort& port, TableCache& cache) { port.bind(cache); }
     virtual void join(MemoryPort& port, OffChipMemory& memory) { port.bind(memory); }
-
-  private:
-    /// Tests: in the order of datapath::HeightTest.
-    template <class... Tests>
-    static std::unique_ptr<HeightTestUnit> make_one_of(Name name, const UnitContext& context) {
-        static_assert(sizeof...(Tests) == height_test_kinds.size());
-        using Make = std::unique_ptr<HeightTestUnit> (*)(Name, const UnitContext&);
-        constexpr Make make[]{[](Name its_name, const UnitContext& its_context) -> std::unique_ptr<HeightTestUnit> {
-            return std::make_unique<Tests>(its_name, its_context);
-        }...};
-        return make[static_cast<std::size_t>(context.registers.formats.height_test)](name, context);
-    }
 };
 
 }  // namespace tessera

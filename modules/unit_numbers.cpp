@@ -3,13 +3,14 @@
 #include <string>
 
 #include "modules/timing/all_units.h"
+#include "modules/timing/design_options.h"
 
 namespace tessera {
 
 namespace {
 
 std::vector<UnitNumbers::Entry> number_units() {
-    constexpr unsigned most_tests_units = 3, numbered_lanes = 4;
+    constexpr unsigned numbered_lanes = 4;
     std::vector<UnitNumbers::Entry> entries;
     const auto add = [&](const std::string& name, const std::string& shown) {
         entries.push_back({static_cast<unsigned>(entries.size() + 1), name, shown});

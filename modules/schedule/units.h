@@ -1,6 +1,8 @@
 #pragma once
 #include <cstdint>
 
+#include "modules/timing/design_options.h"
+
 namespace tessera::schedule {
 
 /// A unit's number in the machine.
@@ -30,7 +32,6 @@ enum : Unit {
     collect_tests,
     units_with_one
 };
-constexpr unsigned most_tests_units = 3;
 constexpr Unit units_of_tests = units_with_one - calculate_new_u;
 
 /// The number of the corresponding unit in Tessellation Tests unit k.

@@ -18,13 +18,14 @@ class UnitNumbers {
     struct Entry {
         unsigned number;
         std::string name;  ///< SystemC name without that of the top module
-        std::string
-            shown;  ///< in waveforms/units.txt: without that of its Tessellation Tests, _1, _2, ... from the second on
+        /// In waveforms/units.txt: without its Tessellation Tests unit's name; _1, _2, ... from the second on.
+        std::string shown;
     };
     static constexpr unsigned bits = 7;
     static constexpr unsigned nobody = 0;
     static constexpr unsigned other = 127;  ///< not numbered
 
+    /// `all` must outlive it.
     explicit UnitNumbers(const std::vector<Entry>& all) : all_(all) {}
 
     /// The number of a unit, by its name. The name is looked up once per object.

@@ -7,8 +7,8 @@
 #include "modules/timing/timing.h"
 
 // What is known of each unit and of each table's memory besides its code. Keys, the table of units in modules/README.md,
-// the numbers in waveforms and the kinds of height tests are derived from these lists. Without SystemC: job files, the
-// fuzzers and the host's libraries need none.
+// the numbers in waveforms, the random designs and the kinds of height tests are derived from these lists. Includes no
+// SystemC: job files, fuzzers and the host's libraries are built without it.
 
 namespace tessera {
 
@@ -27,16 +27,16 @@ enum class Per { machine, tests_unit, lane };
 struct UnitSpec {
     const char* name;   ///< of its module; of its keys, the first part
     const char* title;  ///< as in the paper's figures
-    const char* work;
+    const char* work;   ///< columns of README's table
     const char* arithmetic;
     UnitTiming Timing::*timing = nullptr;  ///< null: wires
     Per per = Per::machine;
-    bool reads_tables = false;
-    const char* buffer = "capacity of its input buffer";
+    bool reads_tables = false;                            ///< its latency does not include the reads
+    const char* buffer = "capacity of its input buffer";  ///< meaning of its key
     UnitParameter further{};
 };
 
-/// In the order of the paper's figures.
+/// In the order of the paper's figures; after a unit those that replace it.
 inline constexpr std::array<UnitSpec, 18> all_units = {{
     {"get_triangle", "Get Triangle",
      "takes a triangle from the queue, else from the host; sends its new parts down both branches, and the triangle itself "

@@ -154,7 +154,7 @@ void declare_option_keys(const Keys& key) {
         "queue.overflow", [](auto& d) -> auto& { return d.queue.overflow; },
         "Timed mode: a full queue spills to off-chip memory, stalls the pipeline, or ends the run with exit code 4");
     key.add_number(
-        "tests_units", [](auto& d) -> auto& { return d.tests_units; }, "-", {1, 3},
+        "tests_units", [](auto& d) -> auto& { return d.tests_units; }, "-", {1, most_tests_units},
         "Timed mode: Tessellation Tests units, 1 or 3 (one for each edge of a triangle)");
     key.template add_choice<Work>(
         "work", [](auto& d) -> auto& { return d.work; },

@@ -14,6 +14,8 @@ struct QueueDesign {
     std::uint64_t off_chip_triangles = std::uint64_t{1} << 20;  ///< places in off-chip memory
 };
 
+inline constexpr unsigned most_tests_units = 3;  ///< one for each edge of a triangle
+
 /// The options of a design. Their ranges, and those of Timing, are declared in design_keys.h; the rules between them in
 /// design_rules.h.
 struct DesignOptions {

@@ -63,7 +63,6 @@ class GetTriangle : public Unit {
         Item offered;
         std::uint64_t next = 0;
     };
-    static constexpr std::size_t most_tests_units = 3;
 
     void b_transport_from_host(datapath::Triangle& triangle, sc_core::sc_time& delay);
     void b_transport_from_triangle_queue(datapath::Triangle& triangle, sc_core::sc_time& delay);

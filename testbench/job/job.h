@@ -38,8 +38,8 @@ struct MapRange {
 };
 
 /// One run of tessera, as described by a job file. Every key's unit, default, range and description are declared once,
-/// in job_keys.cpp, testbench/setup/setting_keys.h and modules/timing/design_keys.h; the defaults are the initialisers below and form the default job
-/// (the half donut on the plane of 18 triangles).
+/// in job_keys.cpp, testbench/setup/setting_keys.h and modules/timing/design_keys.h. The defaults are the initialisers
+/// below and form the default job (the half donut on the plane of 18 triangles).
 struct Job {
     struct Mesh {
         MeshSource source = MeshSource::plane;

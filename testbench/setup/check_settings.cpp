@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <string>
 
 #include "modules/datapath/format.h"
 #include "testbench/setup/faults.h"

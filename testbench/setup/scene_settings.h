@@ -102,7 +102,7 @@ struct SceneOptions {
     double ambient = 0.2;                           ///< light on every surface, fraction of full scale
 };
 
-/// The inputs of the registers besides mesh and map. Ranges: setting_keys.h.
+/// The inputs of the registers besides mesh and map. Ranges: those of the keys (testbench/job/README.md).
 struct SceneSettings : SceneOptions {
     DisplacementSettings displacement;
     CameraSettings camera;

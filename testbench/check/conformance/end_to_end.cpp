@@ -21,7 +21,7 @@ std::uint64_t bound_of(const EmittedMesh& hardware) {
     return 4 * hardware.triangles.size() + 1000;
 }
 
-golden::Parameters rounding_texture(golden::Parameters parameters, const MachineSetup& setup) {
+golden::Parameters with_steps_of_formats(golden::Parameters parameters, const MachineSetup& setup) {
     parameters.texture_step = std::ldexp(1.0, -setup.registers.formats.texture.fraction);
     parameters.direction_step = std::ldexp(1.0, -setup.registers.formats.normal.fraction);
     parameters.distance_step = std::ldexp(1.0, -setup.registers.formats.view_distance.fraction);
@@ -146,7 +146,7 @@ void GoldenSurface::add(const golden::Triangle& t) {
 
 GoldenRun::GoldenRun(const MachineSetup& setup, const GoldenJob& golden,
                      const std::vector<std::uint32_t>& base_triangles, std::uint64_t most)
-    : setup_(setup), golden_(golden), parameters_(rounding_texture(golden.parameters(), setup)), most_(most) {
+    : setup_(setup), golden_(golden), parameters_(with_steps_of_formats(golden.parameters(), setup)), most_(most) {
     const double step = parameters_.texture_step;
     base_.reserve(base_triangles.size());
     for (const std::uint32_t triangle : base_triangles) {
@@ -191,7 +191,7 @@ EndToEndResult GoldenRun::compare(const EmittedMesh& hardware, double allowed_tr
 
 EndToEndResult compare_end_to_end(const MachineSetup& setup, const GoldenInputs& inputs, const EmittedMesh& hardware) {
     const GoldenSurface surface = run_golden(golden_base_triangles(setup), inputs.map,
-                                             rounding_texture(inputs.parameters, setup), bound_of(hardware));
+                                             with_steps_of_formats(inputs.parameters, setup), bound_of(hardware));
     return compare(setup, surface, hardware, {}, nullptr);
 }
 

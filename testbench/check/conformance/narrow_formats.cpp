@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <cstdint>
+#include <string>
+#include <variant>
 #include <vector>
 
 #include "testbench/job/job_keys.h"

@@ -1,6 +1,4 @@
 #pragma once
-#include <algorithm>
-
 #include "testbench/job/job.h"
 #include "testbench/setup/height_map.h"
 
@@ -10,9 +8,9 @@ namespace tessera {
 inline void span_values(HeightMap& map, const MapRange& range) {
     if (range.kind == MapRange::Kind::full)
         return;
-    const auto [low, high] = std::minmax_element(map.values.begin(), map.values.end());
-    map.range_low = map.span_low = static_cast<double>(*low);
-    map.range_high = map.span_high = static_cast<double>(*high);
+    const auto [low, high] = map.extremes();
+    map.range_low = map.span_low = low;
+    map.range_high = map.span_high = high;
     if (range.kind == MapRange::Kind::given) {
         map.span_low = range.low / map.source_units;
         map.span_high = range.high / map.source_units;

@@ -21,10 +21,10 @@ struct Checks {
     std::optional<InvariantResult> invariants;
     std::optional<WorkResult> work;
     std::optional<ReadResult> reads;
-    std::optional<BoundResult> bound;  ///< with a Bound Test
-    double allowed_flips = 0.5;        ///< percent of edges
-    std::vector<std::string> remarks;  ///< repairs and anomalies of mesh and map; one sentence each
-    std::vector<std::string> warnings;  ///< for the summary: what explains a failed check, and its remedy
+    std::optional<BoundResult> bound;   ///< with a Bound Test
+    double allowed_flips = 0.5;         ///< percent of edges
+    std::vector<std::string> remarks;   ///< repairs and anomalies of mesh and map; one sentence each
+    std::vector<std::string> warnings;  ///< for the summary: causes of differences from golden, each with its remedy
 
     bool passed() const {
         return (!setup || setup->passed()) && (!conformance || conformance->passed(allowed_flips)) &&

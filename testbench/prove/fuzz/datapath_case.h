@@ -10,7 +10,7 @@ namespace tessera::fuzz {
 
 /// All inputs of the datapath, made from a fuzzer's bytes: a design's formats and registers, its three tables, and a
 /// small patch of base triangles that share edges. A case is valid for any bytes: its formats are those of a valid job
-/// (ranges of job_keys.cpp), and its registers are in the ranges set by the host (testbench/machine/machine_setup.cpp).
+/// (ranges of testbench/setup/setting_keys.h), and its registers are in the ranges set by the host (testbench/machine/machine_setup.cpp).
 /// The Generation Test is always on, since the recursion may not end without it.
 struct DatapathCase {
     datapath::Registers registers;

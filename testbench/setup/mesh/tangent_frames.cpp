@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <utility>
 
@@ -18,7 +19,7 @@ constexpr double cancelled = 1e-6;
 constexpr double slip = 0.06;
 /// Texture coordinates are compared in these parts of the map: 1/16 texel of the largest.
 constexpr int texture_bits = 16;
-/// Directions of dp/du around a point differ by less, in degrees, on a curved mesh without a fault.
+/// Parts around a point of a curved surface may differ by this much, in degrees, without a fault.
 constexpr double natural_turn = 15;
 /// Normals are against their triangle's winding only beyond rounding.
 constexpr double against_winding = -1e-6;
@@ -47,8 +48,9 @@ class Corners {
     std::vector<std::uint32_t> parent_;
 };
 
-/// For each corner the number of its frame, numbered by their first corners.
-std::vector<std::uint32_t> frames_of_corners(const BaseMesh& mesh) {
+/// For each corner the number of its frame, numbered by their first corners. `apart`: triangles that are joined to none;
+/// empty: there are none.
+std::vector<std::uint32_t> frames_of_corners(const BaseMesh& mesh, const std::vector<bool>& apart = {}) {
     const std::vector<std::uint32_t> place = first_equal(mesh.vertices, [](const BaseVertex& vertex) {
         const PositionKey p = position_key(vertex.position), n = position_key(vertex.normal);
         return std::array{p[0], p[1], p[2], n[0], n[1], n[2]};
@@ -71,7 +73,8 @@ std::vector<std::uint32_t> frames_of_corners(const BaseMesh& mesh) {
         const auto [from, to] = ends(side);
         const glm::dvec2 &a = mesh.vertices[vertex(from)].texture, &b = mesh.vertices[vertex(to)].texture;
         const glm::dvec2 start(steps(a.x), steps(a.y)), end(steps(b.x), steps(b.y));
-        return std::array<std::uint64_t, 6>{place[vertex(from)],
+        return std::array<std::uint64_t, 7>{apart.empty() || !apart[side / 3] ? 0 : side + 1,
+                                            place[vertex(from)],
                                             place[vertex(to)],
                                             alike_bits(within_period(start.x)),
                                             alike_bits(within_period(start.y)),
@@ -99,10 +102,9 @@ struct Sum {
 
 struct Frame {
     Sum straight, mirrored;
-    bool torn = false;     // used by both
-    bool bridged = false;  // by a triangle without area in texture space
+    bool torn = false;  // used by both
     glm::dvec3 tangent{0};
-    double turned = 0;  // largest angle in degrees from the tangent to a triangle's own, if bridged
+    double turned = 0;  // largest angle in degrees from the tangent to that of a part
 
     double area() const { return straight.area + mirrored.area; }
     bool is_mirrored() const { return mirrored.area > straight.area; }
@@ -119,7 +121,7 @@ bool is_mirrored(const BaseMesh& mesh, const std::array<std::uint32_t, 3>& trian
 }
 
 void add_triangles(const BaseMesh& mesh, const std::vector<std::uint32_t>& frame_of, std::vector<Frame>& frames,
-                   std::size_t& flat_texture) {
+                   std::vector<bool>& flat) {
     const auto position = [&](std::uint32_t vertex) -> const glm::dvec3& { return mesh.vertices[vertex].position; };
     double largest_area = 0;
     for (const auto& [a, b, c] : mesh.triangles)
@@ -128,9 +130,7 @@ void add_triangles(const BaseMesh& mesh, const std::vector<std::uint32_t>& frame
         const auto& triangle = mesh.triangles[t];
         const auto gradient = texture_gradient(mesh, triangle);
         if (!gradient) {
-            ++flat_texture;
-            for (std::size_t k = 0; k < 3; ++k)
-                frames[frame_of[3 * t + k]].bridged = true;
+            flat[t] = true;
             continue;
         }
         const double weight = largest_area > 0 ? gradient->area / largest_area : 1;
@@ -154,21 +154,32 @@ glm::dvec3 tangent_from(const Sum& sum, const glm::dvec3& normal) {
     return unit_or_zero(rough - normal * glm::dot(normal, rough));
 }
 
-/// Parts of the texture that only triangles without area in texture space connect may lie in different directions.
-void measure_turns(const BaseMesh& mesh, const std::vector<std::uint32_t>& frame_of, std::vector<Frame>& frames) {
+/// Parts of the texture that only the triangles without area in it connect may lie in different directions: sets
+/// Frame::turned.
+void measure_turns(const BaseMesh& mesh, const std::vector<bool>& flat, const std::vector<std::uint32_t>& frame_of,
+                   std::vector<Frame>& frames) {
+    const std::vector<std::uint32_t> part_of = frames_of_corners(mesh, flat);
+    std::vector<Sum> parts(1 + *std::max_element(part_of.begin(), part_of.end()));
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
         const auto gradient = texture_gradient(mesh, mesh.triangles[t]);
         if (!gradient)
             continue;
         const bool mirrored = is_mirrored(mesh, mesh.triangles[t], *gradient);
-        for (std::size_t k = 0; k < 3; ++k) {
-            Frame& frame = frames[frame_of[3 * t + k]];
-            if (!frame.bridged || frame.tangent == glm::dvec3(0) || mirrored != frame.is_mirrored())
+        for (std::size_t corner = 3 * t; corner < 3 * t + 3; ++corner) {
+            if (mirrored != frames[frame_of[corner]].is_mirrored())
                 continue;
-            const glm::dvec3 own = tangent_from({gradient->dp_du, 0}, mesh.vertices[mesh.triangles[t][k]].normal);
-            const double cosine = std::clamp(glm::dot(own, frame.tangent), -1.0, 1.0);
-            frame.turned = std::max(frame.turned, glm::degrees(std::acos(cosine)));
+            parts[part_of[corner]].direction += gradient->area * unit_or_zero(gradient->dp_du);
+            parts[part_of[corner]].area += gradient->area;
         }
+    }
+    for (std::size_t corner = 0; corner < frame_of.size(); ++corner) {
+        Frame& frame = frames[frame_of[corner]];
+        const glm::dvec3 own =
+            tangent_from(parts[part_of[corner]], mesh.vertices[mesh.triangles[corner / 3][corner % 3]].normal);
+        if (frame.tangent == glm::dvec3(0) || own == glm::dvec3(0))
+            continue;
+        const double cosine = std::clamp(glm::dot(own, frame.tangent), -1.0, 1.0);
+        frame.turned = std::max(frame.turned, glm::degrees(std::acos(cosine)));
     }
 }
 
@@ -201,8 +212,10 @@ void hand_out(BaseMesh& mesh, const std::vector<std::uint32_t>& frame_of, const 
 void complete_tangent_frames(BaseMesh& mesh) {
     const std::vector<std::uint32_t> frame_of = frames_of_corners(mesh);
     std::vector<Frame> frames(frame_of.empty() ? 0 : 1 + *std::max_element(frame_of.begin(), frame_of.end()));
-    std::size_t flat_texture = 0, without = 0, cancelling = 0, torn = 0, slips = 0;
-    add_triangles(mesh, frame_of, frames, flat_texture);
+    std::vector<bool> flat(mesh.triangles.size());
+    std::size_t without = 0, cancelling = 0, torn = 0, slips = 0;
+    add_triangles(mesh, frame_of, frames, flat);
+    const auto flat_texture = static_cast<std::size_t>(std::count(flat.begin(), flat.end(), true));
     for (std::size_t corner = 0, next = 0; corner < frame_of.size(); ++corner) {
         if (frame_of[corner] != next)
             continue;
@@ -222,7 +235,7 @@ void complete_tangent_frames(BaseMesh& mesh) {
     for (std::size_t corner = 0; corner < frame_of.size(); corner += 3)
         blank += std::all_of(&frame_of[corner], &frame_of[corner] + 3, [&](std::uint32_t f) { return frames[f].torn; });
     if (flat_texture > 0)
-        measure_turns(mesh, frame_of, frames);
+        measure_turns(mesh, flat, frame_of, frames);
     hand_out(mesh, frame_of, frames);
 
     std::size_t turned = 0;
@@ -239,8 +252,8 @@ void complete_tangent_frames(BaseMesh& mesh) {
     if (turned > 0)
         mesh.repairs.push_back(fmt::format(
             "At {} point(s) triangles without area in texture space connect parts of the texture that lie in different "
-            "directions: these get the mean, up to {:.0f} degrees from their own, and their normals are wrong. Unwrap "
-            "these triangles, too.",
+            "directions. The parts share the mean tangent, up to {:.0f} degrees from their own, and their normals are "
+            "wrong. Give these triangles an area in the map.",
             turned, most_turned));
     say(without,
         "{} point(s) have no triangle with area in texture space, so no tangent: their normals are those of the base "

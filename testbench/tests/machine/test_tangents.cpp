@@ -278,8 +278,9 @@ TEST_CASE("a small triangle turned over in the map follows the others around it"
     CHECK(mesh.vertices[0].tangent.x > 0.99);
 }
 
-TEST_CASE("parts of the map that only a triangle without area in it connects are said if they are turned") {
-    // two quads and a triangle between them, of `gap` degrees, both of whose sides lie on one line of the map
+TEST_CASE(
+    "parts of the map that are joined only by a triangle without area in it are noted if they are turned against each other") {
+    // two right-angled triangles and between them one of `gap` degrees, whose sides lie on one line of the map
     const auto fan = [](double gap) {
         std::string text = "v 0 0 0\n";
         for (const double angle : {90 + gap / 2, 90 - gap / 2, -gap / 2, 180 + gap / 2})
@@ -293,6 +294,22 @@ TEST_CASE("parts of the map that only a triangle without area in it connects are
                    Contains("At 1 point(s) triangles without area in texture space connect") &&
                    Contains("up to 30 degrees from their own"));
     CHECK_THAT(repairs_of(parse_obj(fan(10), "fan")), Contains("1 triangle(s) have no area") && !Contains("connect"));
+}
+
+TEST_CASE("a coarse prism whose cap has no area in the map has one part around each point of its rim") {
+    std::string text = "v 0 0 1\nvt .5 1\nvn 0 0 1\n", faces;
+    for (int k = 0; k <= 6; ++k) {
+        const double angle = k % 6 * pi / 3, x = std::cos(angle), y = std::sin(angle);
+        text += fmt::format("v {0} {1} 0\nv {0} {1} 1\nvn {0} {1} 0\nvt {2} 0\nvt {2} 1\n", x, y, k / 6.0);
+        if (k == 6)
+            break;
+        const int low = 2 * k + 2, high = low + 1, normal = k + 2, next = normal + 1;
+        faces += fmt::format("f {0}/{0}/{4} {1}/{1}/{5} {2}/{2}/{5}\nf {0}/{0}/{4} {2}/{2}/{5} {3}/{3}/{4}\n", low,
+                             low + 2, high + 2, high, normal, next);
+        faces += fmt::format("f 1/1/1 {0}/{0}/{2} {1}/{1}/{3}\n", high, high + 2, normal, next);
+    }
+    CHECK_THAT(repairs_of(parse_obj(text + faces, "prism")),
+               Contains("6 triangle(s) have no area") && !Contains("connect"));
 }
 
 TEST_CASE("at a pole triangles with their own coordinates have their own tangents, with one there is none") {

@@ -12,6 +12,7 @@
 #include "testbench/machine/inputs.h"
 #include "testbench/machine/machine_setup.h"
 #include "testbench/setup/setting_keys.h"
+#include "testbench/tests/support/job_settings.h"
 
 using namespace tessera;
 using Catch::Contains;
@@ -69,7 +70,7 @@ std::vector<unsigned char> tables_of(const PreparedScene& scene) {
 template <typename Group>
 class BeyondRanges {
   public:
-    BeyondRanges(const char* part, Group& (*of)(SceneSettings&)) : part_(part), of_(of) {}
+    BeyondRanges(const char* part, Group& (*of)(SceneSettings&), int& tried) : part_(part), of_(of), tried_(tried) {}
 
     template <typename... Rest>
     void add(const char* name, std::int64_t Group::*member, const char*, const KeyRange& range, Rest...) const {
@@ -85,7 +86,8 @@ class BeyondRanges {
     void add(const char* name, std::array<double, 3> Group::*member, const char*, const KeyRange& range,
              Rest...) const {
         for (const std::size_t k : {0u, 2u})
-            refused(name, [&](Group& group) { (group.*member)[k] = 2 * range.high; });
+            for (const double value : {2 * range.low, 2 * range.high})
+                refused(name, [&](Group& group) { (group.*member)[k] = value; });
     }
     template <typename Choice, typename Owner>
     void add(const char*, Choice Owner::*, const char*) const {}
@@ -95,26 +97,31 @@ class BeyondRanges {
     void refused(const std::string& name, const Spoil& spoil) const {
         Scene scene = square();
         spoil(of_(scene.settings));
+        ++tried_;
         INFO(part_ << name);
         CHECK_THROWS_WITH(prepare(scene), Contains("`" + (part_ + name) + "` = ") && Contains("must be "));
     }
 
     std::string part_;
     Group& (*of_)(SceneSettings&);
+    int& tried_;
 };
 
 }  // namespace
 
 TEST_CASE("every number of a scene's settings is held to its range") {
-    declare_scene_keys(BeyondRanges<SceneOptions>("", [](SceneSettings& s) -> SceneOptions& { return s; }));
+    int tried = 0;
+    declare_scene_keys(BeyondRanges<SceneOptions>(
+        "", [](SceneSettings& s) -> SceneOptions& { return s; }, tried));
     declare_displacement_keys(BeyondRanges<DisplacementSettings>(
-        "displacement.", [](SceneSettings & s) -> auto& { return s.displacement; }));
+        "displacement.", [](SceneSettings & s) -> auto& { return s.displacement; }, tried));
     declare_camera_keys(BeyondRanges<CameraSettings>(
-        "camera.", [](SceneSettings & s) -> auto& { return s.camera; }));
+        "camera.", [](SceneSettings & s) -> auto& { return s.camera; }, tried));
     declare_tests_keys(BeyondRanges<TestSettings>(
-        "tests.", [](SceneSettings & s) -> auto& { return s.tests; }));
+        "tests.", [](SceneSettings & s) -> auto& { return s.tests; }, tried));
     declare_formats_keys(BeyondRanges<FormatSettings>(
-        "formats.", [](SceneSettings & s) -> auto& { return s.formats; }));
+        "formats.", [](SceneSettings & s) -> auto& { return s.formats; }, tried));
+    CHECK(tried > 80);
 }
 
 // The normals of the plane and the sphere are those that prepare() calculates.
@@ -214,21 +221,22 @@ TEST_CASE("triangles without area are left out of a scene, with a remark") {
     CHECK(prepared.remarks.back() == "triangles dropped because they have no area: 1");
 }
 
-TEST_CASE("a Rank Table for a view is that of its displacement scale, bounds on the surface are those of every scale") {
-    const auto tables = [](RankView view, double scale) {
-        Job job;
-        job.mesh.source = MeshSource::lattice;
-        job.mesh.spacing = 16;
-        job.map.width = job.map.height = 48;
-        job.hardware.height_test = HeightTest::rank;
-        job.hardware.test_order = TestOrder::cheap_first;
-        job.tests.rank_view = view;
-        job.formats.bound_bits = 16;
-        job.displacement.scale = scale;
+TEST_CASE(
+    "a Rank Table for a view has the radii of its displacement scale and format of distances, and bounds of any") {
+    const auto tables = [](const std::string& settings) {
+        const Job job = testing::with_settings({},
+                                               "mesh.source=lattice mesh.spacing=16 map.width=48 map.height=48 "
+                                               "hardware.height_test=rank formats.bound_bits=16 " +
+                                                   settings);
         const Inputs inputs = load_inputs(job);
         return make_setup(inputs.resolved.job, inputs.mesh, inputs.map).rank_tables;
     };
-    CHECK(tables(RankView::none, 0.1).bound == tables(RankView::none, 0.4).bound);
-    CHECK(tables(RankView::per_point, 0.1).bound == tables(RankView::per_point, 0.4).bound);
-    CHECK(tables(RankView::per_point, 0.1).radius != tables(RankView::per_point, 0.4).radius);
+    const std::string seen = "hardware.test_order=cheap_first tests.rank_view=per_point displacement.scale=";
+    const RankTables on_surface = tables("displacement.scale=0.1"), low = tables(seen + "0.1"),
+                     high = tables(seen + "0.4"),
+                     coarse = tables(seen + "0.1 formats.position_bits=20 formats.position_fraction=8");
+    CHECK(on_surface.bound == tables("displacement.scale=0.4").bound);
+    CHECK(low.bound == high.bound);
+    CHECK(low.radius != high.radius);
+    CHECK(low.radius != coarse.radius);
 }

@@ -152,7 +152,7 @@ TEST_CASE("PNG files cut off or with changed bytes are all noticed") {
     CHECK(outcome_of(folder / "good.png").kind != Outcome::Kind::refused);
     // The checksums detect every damage. libpng 1.6.48 reads a file whose last chunk alone, which is empty, has a wrong one.
     const Damage damage = read_damaged(folder, read_all(folder / "good.png"));
-    CHECK(damage.refused + damage.remarked >= damaged_files);
+    CHECK(damage.refused + damage.remarked == damaged_files);
     CHECK(damage.refused > damaged_files * 9 / 10);
 }
 
