@@ -148,6 +148,9 @@ inline const std::map<std::string, std::vector<Remedy>>& remedies() {
          }},
         {"mesh",
          {
+             {"{ printf 'v %s\\n' '0 0 0' '-.5 .866 0' '.5 .866 0' '.866 -.5 0' '-.866 -.5 0'; printf 'vt %s\\n' '.5 .3' '.5 .5' '.7 .3' '.3 .3' '.4 .5'; "
+              "printf '%s\\n' 'vn 0 0 1' 'f 1/1/1 3/2/1 2/2/1' 'f 1/1/1 4/3/1 3/2/1' 'f 1/1/1 2/2/1 5/4/1'; } > a.obj; run mesh.file=a.obj",
+              "Give these triangles an area in the map.", "sed -i 's,2/2/1,2/5/1,' a.obj; run mesh.file=a.obj"},
              {"square 1e20 > a.obj; run mesh.file=a.obj", "multiply each coordinate of the mesh's vertices by {:g}",
               "square $(awk \"BEGIN { print 1e20 * $1 }\") > a.obj; run mesh.file=a.obj"},
              {"square 1e-20 > a.obj; run mesh.file=a.obj", "multiply each coordinate of the mesh's vertices by {:g}",

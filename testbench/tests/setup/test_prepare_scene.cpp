@@ -121,7 +121,7 @@ TEST_CASE("every number of a scene's settings is held to its range") {
         "tests.", [](SceneSettings & s) -> auto& { return s.tests; }, tried));
     declare_formats_keys(BeyondRanges<FormatSettings>(
         "formats.", [](SceneSettings & s) -> auto& { return s.formats; }, tried));
-    CHECK(tried > 80);
+    CHECK(tried > 70);
 }
 
 // The normals of the plane and the sphere are those that prepare() calculates.
