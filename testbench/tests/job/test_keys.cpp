@@ -80,9 +80,8 @@ TEST_CASE("every member of Job has a key") {
     CHECK(keys_in("tests") == count_members<Job::Tests>());
     CHECK(keys_in("formats") == count_members<Job::Formats>());
     // A base and a struct within it count as one member each.
-    CHECK(keys_in("hardware") ==
-          count_members<Job::Hardware>() - 2 + count_members<SceneOptions>() + count_members<DesignOptions>() - 1 +
-              count_members<QueueDesign>());
+    CHECK(keys_in("hardware") == count_members<Job::Hardware>() - 2 + count_members<SceneOptions>() +
+                                     count_members<DesignOptions>() - 1 + count_members<QueueDesign>());
     CHECK(keys_in("check") == count_members<Job::Check>());
     CHECK(keys_in("limits") == count_members<Job::Limits>());
     CHECK(keys_in("output") == count_members<Job::Output>());
