@@ -159,48 +159,94 @@ TEST_CASE("a scene of plain structs gives the registers, tables and triangles of
     }
 }
 
-TEST_CASE("an invalid scene is refused with the value and a remedy") {
+TEST_CASE("an invalid scene is refused with the value and a remedy, which works") {
     struct Case {
         const char* text;
         std::function<void(Scene&)> spoil;
+        std::function<void(Scene&)> mend;  // as the text says
     };
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     const Case cases[] = {
-        {"`displacement.scale` is not set", [](Scene& s) { s.settings.displacement = {}; }},
-        {"`camera.eye` is not set, or not a number: set it",
-         [](Scene& s) { s.settings.camera.eye = automatic_vector; }},
-        {"`camera.near_plane` is not set", [](Scene& s) { s.settings.camera.near_plane = automatic; }},
-        {"are the same point", [](Scene& s) { s.settings.camera.target = s.settings.camera.eye; }},
-        {"is parallel to the view direction",
+        {"`displacement.scale` is not set, or not a number: set it", [](Scene& s) { s.settings.displacement = {}; },
+         [](Scene& s) { s.settings.displacement.scale = 1; }},
+        {"`camera.eye` is not set, or not a number: set it", [](Scene& s) { s.settings.camera.eye = automatic_vector; },
+         [](Scene& s) {
+             s.settings.camera.eye = {0, -2, 1};
+         }},
+        {"`camera.near_plane` is not set, or not a number: set it",
+         [](Scene& s) { s.settings.camera.near_plane = automatic; },
+         [](Scene& s) { s.settings.camera.near_plane = 0.1; }},
+        {"are the same point: set camera.target = [0.5, 0.6794494717703365, 1.5]",
+         [](Scene& s) { s.settings.camera.target = s.settings.camera.eye; },
+         [](Scene& s) {
+             s.settings.camera.target = {0.5, 0.6794494717703365, 1.5};
+         }},
+        {"is parallel to the view direction [0.0, 2.0, -1.5] (camera.target - camera.eye): set camera.up = [1.0, 0.0, 0.0]",
          [](Scene& s) {
              s.settings.camera.up = {0, 2, -1.5};
+         },
+         [](Scene& s) {
+             s.settings.camera.up = {1, 0, 0};
          }},
-        {"`formats.position_bits` = 40: must be 8 to 32", [](Scene& s) { s.settings.formats.position_bits = 40; }},
+        {"`formats.position_bits` = 40: must be 8 to 32", [](Scene& s) { s.settings.formats.position_bits = 40; },
+         [](Scene& s) { s.settings.formats.position_bits = 32; }},
         {"`formats.tex_coord_fraction` = 3: must be -1 to 2",
-         [](Scene& s) { s.settings.formats.tex_coord_fraction = 3; }},
-        {"`tests.normal_threshold` is not set, or not a number",
-         [](Scene& s) { s.settings.tests.normal_threshold = nan; }},
-        {"`tests.generation_limit` = 9, but `formats.generation_bits` = 3",
+         [](Scene& s) { s.settings.formats.tex_coord_fraction = 3; },
+         [](Scene& s) { s.settings.formats.tex_coord_fraction = -1; }},
+        {"`formats.summed_height_bits` = 65: must be 0, or ",
+         [](Scene& s) { s.settings.formats.summed_height_bits = 65; },
+         [](Scene& s) { s.settings.formats.summed_height_bits = 0; }},
+        {"`tests.normal_threshold` is not set, or not a number: set it",
+         [](Scene& s) { s.settings.tests.normal_threshold = nan; },
+         [](Scene& s) { s.settings.tests.normal_threshold = 0.1; }},
+        {"`tests.generation_limit` = 9, but `formats.generation_bits` = 3 counts to 7: set tests.generation_limit = 7",
          [](Scene& s) {
              s.settings.formats.generation_bits = 3;
              s.settings.tests.generation_limit = 9;
+         },
+         [](Scene& s) { s.settings.tests.generation_limit = 7; }},
+        {"or formats.generation_bits = 4",
+         [](Scene& s) {
+             s.settings.formats.generation_bits = 3;
+             s.settings.tests.generation_limit = 9;
+         },
+         [](Scene& s) { s.settings.formats.generation_bits = 4; }},
+        {"`light` has no direction: set one, such as [0, 0, 1]", [](Scene& s) { s.settings.light = {}; },
+         [](Scene& s) {
+             s.settings.light = {0, 0, 1};
          }},
-        {"`light` has no direction", [](Scene& s) { s.settings.light = {}; }},
-        {"vertices[2] has a value that is not finite", [](Scene& s) { s.vertices[2].position[1] = nan; }},
-        {"triangles[1] names vertex 4 of 4", [](Scene& s) { s.triangles[1][2] = 4; }},
+        {"vertices[2] has a value that is not finite", [](Scene& s) { s.vertices[2].position[1] = nan; },
+         [](Scene& s) { s.vertices[2].position[1] = 1; }},
+        {"triangles[1] names vertex 4 of 4", [](Scene& s) { s.triangles[1][2] = 4; },
+         [](Scene& s) { s.triangles[1][2] = 3; }},
         {"none of the 2 triangles has an area",
          [](Scene& s) {
              s.triangles = {{0, 1, 1}, {2, 2, 2}};
+         },
+         [](Scene& s) {
+             s.triangles = {{0, 1, 2}};
          }},
-        {"none of the 0 triangles has an area", [](Scene& s) { s.triangles.clear(); }},
-        {"a map of 0 x 4 texels", [](Scene& s) { s.map_width = 0; }},
-        {"the map has 16 values, but map_width x map_height = 20", [](Scene& s) { s.map_width = 5; }},
-        {"the map has a value that is not finite", [](Scene& s) { s.map[3] = static_cast<float>(nan); }},
-        {"map_low > map_high", [](Scene& s) { s.map_low = 2; }},
+        {"none of the 0 triangles has an area", [](Scene& s) { s.triangles.clear(); },
+         [](Scene& s) {
+             s.triangles = {{0, 1, 2}};
+         }},
+        {"a map of 0 x 4 texels: each side must be 1 to ", [](Scene& s) { s.map_width = 0; },
+         [](Scene& s) {
+             s.map_width = 1;
+             s.map.resize(4);
+         }},
+        {"the map has 16 values, but map_width x map_height = 20", [](Scene& s) { s.map_width = 5; },
+         [](Scene& s) { s.map.resize(20); }},
+        {"the map has a value that is not finite", [](Scene& s) { s.map[3] = static_cast<float>(nan); },
+         [](Scene& s) { s.map[3] = 0; }},
+        {"map_low > map_high", [](Scene& s) { s.map_low = 2; }, [](Scene& s) { s.map_low = 0; }},
         {"Transform's sums hold eyes",
          [](Scene& s) {
              s.settings.camera.eye = {0, 0, 1e12};
              s.settings.camera.up = {0, 1, 0};
+         },
+         [](Scene& s) {
+             s.settings.camera.eye = {0, 0, 100};
          }},
     };
     CHECK_NOTHROW(prepare(square()));
@@ -210,6 +256,8 @@ TEST_CASE("an invalid scene is refused with the value and a remedy") {
         c.spoil(scene);
         CHECK_THROWS_WITH(prepare(scene), Contains(c.text));
         CHECK_THROWS_AS(prepare(scene), InputError);
+        c.mend(scene);
+        CHECK_NOTHROW(prepare(scene));
     }
 }
 
