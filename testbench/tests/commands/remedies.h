@@ -363,7 +363,7 @@ inline const std::vector<NotFollowed>& not_followed() {
         {"exceeded by the rounding of heights to codes: {}; set {}", "needs a job whose rounding exceeds the bound: tests/check/surface_error"},
         {"exceeded by the rounding of positions: {}; set {}", "needs a job whose rounding exceeds the bound: tests/check/surface_error"},
         {"transport_dbg for writes", "the libraries' user calls or sets something else; no command reaches it"},
-        {": must be ", "the libraries' user calls or sets something else; no command reaches it"},
+        {": must be ", "a library's message: both ends of each range are tried in tests/modules/timing/test_design_rules.cpp"},
         {"Formats::distances = true", "the libraries' user calls or sets something else; no command reaches it"},
         {"disagree: set both, or neither", "the libraries' user calls or sets something else; no command reaches it"},
         {"call resolve_job() on the job first", "the libraries' user calls or sets something else; no command reaches it"},
