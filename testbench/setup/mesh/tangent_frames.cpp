@@ -110,16 +110,6 @@ struct Frame {
     bool is_mirrored() const { return mirrored.area > straight.area; }
 };
 
-/// Whether the triangle is mirrored in texture space, seen from the side of its vertices' normals.
-bool is_mirrored(const BaseMesh& mesh, const std::array<std::uint32_t, 3>& triangle, const TextureGradient& gradient) {
-    const auto vertex = [&](std::size_t k) -> const BaseVertex& { return mesh.vertices[triangle[k]]; };
-    const glm::dvec3 facing = triangle_normal(vertex(0).position, vertex(1).position, vertex(2).position);
-    double along = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-        along += glm::dot(facing, vertex(k).normal);
-    return gradient.mirrored != (along < against_winding);
-}
-
 void add_triangles(const BaseMesh& mesh, const std::vector<std::uint32_t>& frame_of, std::vector<Frame>& frames,
                    std::vector<bool>& flat) {
     const auto position = [&](std::uint32_t vertex) -> const glm::dvec3& { return mesh.vertices[vertex].position; };
@@ -135,10 +125,14 @@ void add_triangles(const BaseMesh& mesh, const std::vector<std::uint32_t>& frame
         }
         const double weight = largest_area > 0 ? gradient->area / largest_area : 1;
         const glm::dvec3 direction = unit_or_zero(gradient->dp_du);
-        const bool mirrored = is_mirrored(mesh, triangle, *gradient);
+        const glm::dvec3 facing = triangle_normal(position(triangle[0]), position(triangle[1]), position(triangle[2]));
+        double along = 0;
+        for (const std::uint32_t corner : triangle)
+            along += glm::dot(facing, mesh.vertices[corner].normal);
+        const bool inside_out = along < against_winding;
         for (std::size_t k = 0; k < 3; ++k) {
             Frame& frame = frames[frame_of[3 * t + k]];
-            Sum& sum = mirrored ? frame.mirrored : frame.straight;
+            Sum& sum = gradient->mirrored != inside_out ? frame.mirrored : frame.straight;
             sum.direction += weight * direction;
             sum.area += weight;
         }
@@ -156,26 +150,16 @@ glm::dvec3 tangent_from(const Sum& sum, const glm::dvec3& normal) {
 
 /// Parts of the texture that only the triangles without area in it connect may lie in different directions: sets
 /// Frame::turned.
-void measure_turns(const BaseMesh& mesh, const std::vector<bool>& flat, const std::vector<std::uint32_t>& frame_of,
+void measure_turns(const BaseMesh& mesh, std::vector<bool>& flat, const std::vector<std::uint32_t>& frame_of,
                    std::vector<Frame>& frames) {
     const std::vector<std::uint32_t> part_of = frames_of_corners(mesh, flat);
-    std::vector<Sum> parts(1 + *std::max_element(part_of.begin(), part_of.end()));
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-        const auto gradient = texture_gradient(mesh, mesh.triangles[t]);
-        if (!gradient)
-            continue;
-        const bool mirrored = is_mirrored(mesh, mesh.triangles[t], *gradient);
-        for (std::size_t corner = 3 * t; corner < 3 * t + 3; ++corner) {
-            if (mirrored != frames[frame_of[corner]].is_mirrored())
-                continue;
-            parts[part_of[corner]].direction += gradient->area * unit_or_zero(gradient->dp_du);
-            parts[part_of[corner]].area += gradient->area;
-        }
-    }
+    std::vector<Frame> parts(1 + *std::max_element(part_of.begin(), part_of.end()));
+    add_triangles(mesh, part_of, parts, flat);
     for (std::size_t corner = 0; corner < frame_of.size(); ++corner) {
         Frame& frame = frames[frame_of[corner]];
-        const glm::dvec3 own =
-            tangent_from(parts[part_of[corner]], mesh.vertices[mesh.triangles[corner / 3][corner % 3]].normal);
+        const Frame& part = parts[part_of[corner]];
+        const glm::dvec3 own = tangent_from(frame.is_mirrored() ? part.mirrored : part.straight,
+                                            mesh.vertices[mesh.triangles[corner / 3][corner % 3]].normal);
         if (frame.tangent == glm::dvec3(0) || own == glm::dvec3(0))
             continue;
         const double cosine = std::clamp(glm::dot(own, frame.tangent), -1.0, 1.0);
