@@ -18,9 +18,9 @@ enum class AddressMode { clamp, repeat };
 struct RankTable {
     std::int64_t columns = 0, rows = 0;
     std::vector<std::uint16_t> ranks, bounds;
-    std::vector<std::uint8_t> radii;   ///< codes; present with bounds that depend on distance
-    int highest_bound_threshold = 0;   ///< largest threshold for which the bounds hold
-    std::vector<std::uint32_t> order;  ///< entries of the midpoints, in the order of their bisection
+    std::vector<std::uint8_t> radii;    ///< codes; present with bounds that depend on distance
+    int highest_bound_threshold = 0;    ///< largest threshold for which the bounds hold
+    std::vector<glm::dvec2> midpoints;  ///< in texels, in the order of their bisection
 };
 
 /// An entry of the Curvature Table (4.8) for a square of 2^l texels, in codes: | xx u^2 + xy u v + yy v^2 | is the

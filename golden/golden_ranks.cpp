@@ -53,9 +53,9 @@ class Derivation {
         : map_(map),
           source_(source),
           number_at_(static_cast<std::size_t>(source.columns * source.rows), nothing),
-          bisections_(source.order.size()) {
-        for (std::size_t k = 0; k < source.order.size(); ++k)
-            number_at_[source.order[k]] = static_cast<std::uint32_t>(k);
+          bisections_(source.midpoints.size()) {
+        for (std::size_t k = 0; k < source.midpoints.size(); ++k)
+            number_at_[source.entry(source.midpoints[k])] = static_cast<std::uint32_t>(k);
     }
 
     DerivedRanks run() {
@@ -121,12 +121,13 @@ class Derivation {
         const glm::dvec2 texels = glm::abs(i.at - j.at);
         if (std::fmod(texels.x, 2) != 0 || std::fmod(texels.y, 2) != 0 || texels == glm::dvec2(0))
             return nothing;
-        const glm::dvec2 middle = glm::floor(in_first_period((i.at + j.at) / 2.0));
+        const glm::dvec2 middle = in_first_period((i.at + j.at) / 2.0);
         if (middle.x < 0 || middle.y < 0 || middle.x >= static_cast<double>(source_.columns) ||
             middle.y >= static_cast<double>(source_.rows))
             return nothing;
-        return number_at_[static_cast<std::size_t>(middle.y) * static_cast<std::size_t>(source_.columns) +
-                          static_cast<std::size_t>(middle.x)];
+        // Edges without an error have midpoints in the same texel, too.
+        const std::uint32_t number = number_at_[source_.entry(middle)];
+        return number != nothing && source_.midpoints[number] == middle ? number : nothing;
     }
 
     void bisect(const Piece& first) {
@@ -364,7 +365,7 @@ class Derivation {
         if (!entries.empty() || bisections_.empty())
             table.resize(number_at_.size());
         for (std::size_t k = 0; k < entries.size(); ++k)
-            table[source_.order[k]] = entries[k];
+            table[source_.entry(source_.midpoints[k])] = entries[k];
         return table;
     }
 

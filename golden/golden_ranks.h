@@ -23,19 +23,25 @@ struct RankSource {
     bool radii = false;
     glm::dvec3 steps{0};  ///< sizes of a texel along u and along v, and of a code, in last places of a distance
     double rounding = 0;  ///< of a radius, which is a sum of two distances, likewise
-    /// The author's choice: the entry (row * columns + column) of each bisected edge's midpoint, first to last. No two
-    /// midpoints share an entry.
-    std::vector<std::uint32_t> order;
+    /// The author's choice: each bisected edge's midpoint, first to last, in texels, on a repeated axis within the map.
+    /// No two lie in one texel.
+    std::vector<glm::dvec2> midpoints;
+
+    /// Of the entry of a midpoint.
+    std::size_t entry(const glm::dvec2& midpoint) const {
+        return static_cast<std::size_t>(midpoint.y) * static_cast<std::size_t>(columns) +
+               static_cast<std::size_t>(midpoint.x);
+    }
 };
 
 /// Each entry's values, 0 where no edge is bisected.
 struct DerivedRanks {
     std::vector<EntryRange> ranks, bounds, radii;
     EntryRange highest_bound_threshold;
-    std::string fault;  ///< of the order, in words; empty: none
+    std::string fault;  ///< of the midpoints, in words; empty: none
 };
 
-/// Derives a Rank Table by bisecting the base triangles in the given order.
+/// Derives a Rank Table by bisecting the base triangles at the given midpoints.
 DerivedRanks derive_ranks(const Map& map, const RankSource& source);
 
 }  // namespace tessera::golden

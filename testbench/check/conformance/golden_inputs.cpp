@@ -29,8 +29,12 @@ void set_tables(golden::Map& map, const PreparedScene& prepared) {
     if (!prepared.fitted_heights.empty())
         map.set_heights({prepared.fitted_heights.begin(), prepared.fitted_heights.end()});
     const RankTables& ranks = prepared.rank_tables;
+    std::vector<glm::dvec2> midpoints;
+    midpoints.reserve(ranks.midpoints.size());
+    for (const datapath::TexCoord& t : ranks.midpoints)
+        midpoints.push_back(glm::dvec2(t.u, t.v) * std::ldexp(1.0, -prepared.registers.formats.texture.fraction));
     map.set_ranks({ranks.columns, ranks.rows, ranks.rank, ranks.bound, ranks.radius,
-                   static_cast<int>(ranks.highest_bound_threshold), ranks.order});
+                   static_cast<int>(ranks.highest_bound_threshold), std::move(midpoints)});
     if (!prepared.mipmap_table.entries.empty())
         map.make_mipmap(prepared.mipmap_table.filter == MipmapFilter::maximum ? golden::MipmapFilter::maximum
                                                                               : golden::MipmapFilter::mean);

@@ -428,7 +428,7 @@ class BaseCheck {
         judge_.judge(of_triangle("split_by"), triangle.split_by, 0, exact);
         judge_.judge(of_triangle("stopped_by"), triangle.stopped_by, 0, exact);
         judge_.judge(of_triangle("finished"), number(triangle.finished), 0, exact);
-        glm::dvec2 periods(0);
+        const glm::dvec2 periods = periods_added(triangle, corners);
         for (std::size_t k = 0; k < 3; ++k) {
             const datapath::Vertex& hardware = triangle.vertices[k];
             const golden::Vertex& golden = corners[k].vertex;
@@ -455,22 +455,30 @@ class BaseCheck {
             judge_.judge(name("displaced_known"), number(hardware.displaced_known), 0, exact);
             judge_.judge(name("screen_normal_known"), number(hardware.screen_normal_known), 0, exact);
             const golden::Map& map = golden_.map();
-            check_texture(name("texture.u"), hardware.texture.u, golden.texture.x, map.width(), map.address_u(), k == 0,
-                          periods.x);
-            check_texture(name("texture.v"), hardware.texture.v, golden.texture.y, map.height(), map.address_v(),
-                          k == 0, periods.y);
+            check_texture(name("texture.u"), hardware.texture.u, golden.texture.x, map.width(), periods.x);
+            check_texture(name("texture.v"), hardware.texture.v, golden.texture.y, map.height(), periods.y);
         }
     }
 
-    /// `periods`: set by the triangle's first corner.
+    /// The whole periods by which the host moved a triangle on repeated axes. The mean of the corners tells them also
+    /// where a period is one LSB, which rounding may add to a corner.
+    glm::dvec2 periods_added(const datapath::Triangle& triangle, const Corners& corners) const {
+        const golden::Map& map = golden_.map();
+        glm::dvec2 moved(0);  // texels
+        for (std::size_t k = 0; k < 3; ++k) {
+            const datapath::TexCoord& t = triangle.vertices[k].texture;
+            moved += (glm::dvec2(t.u, t.v) / lsb_per_unit(formats_.texture) - corners[k].vertex.texture) / 3.0;
+        }
+        const auto whole = [](double texels, int size, golden::AddressMode mode) {
+            return mode == golden::AddressMode::repeat ? std::round(texels / size) : 0;
+        };
+        return {whole(moved.x, map.width(), map.address_u()), whole(moved.y, map.height(), map.address_v())};
+    }
+
     template <typename Name>
-    void check_texture(Name name, std::uint32_t hardware, double golden, int size, golden::AddressMode mode, bool first,
-                       double& periods) {
+    void check_texture(Name name, std::uint32_t hardware, double golden, int size, double periods) {
         const double lsb = lsb_per_unit(formats_.texture);
-        if (first && mode == golden::AddressMode::repeat)
-            periods = std::round((hardware / lsb - golden) / size);
-        const double expected = (golden + periods * size) * lsb;
-        judge_.judge(name, hardware, expected, to_nearest,
+        judge_.judge(name, hardware, (golden + periods * size) * lsb, to_nearest,
                      double_rounding * (std::abs(golden) + std::abs(periods) * size) * lsb);
     }
 

@@ -266,18 +266,21 @@ golden::DerivedRanks derived_ranks(const MachineSetup& setup, const GoldenJob& g
     const golden::RankTable& table = map.rank_table();
     judge.judge("columns", number(map.has_ranks() ? table.columns : map.curvature_table().columns), covered.x, exact);
     judge.judge("rows", number(map.has_ranks() ? table.rows : map.curvature_table().rows), covered.y, exact);
-    std::vector<std::uint32_t> sorted = table.order;
+    source.columns = table.columns;
+    source.rows = table.rows;
+    source.midpoints = table.midpoints;
+    std::vector<std::size_t> sorted;
+    for (const glm::dvec2& midpoint : source.midpoints)
+        sorted.push_back(source.entry(midpoint));
     std::sort(sorted.begin(), sorted.end());
     if (!map.has_ranks() || std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end())
         return {};
-    source.columns = table.columns;
-    source.rows = table.rows;
     source.rank_bits = golden.scene().rank_bits;
     source.bound_bits = golden.scene().bound_bits;
-    source.order = table.order;
-    judge.require(sorted.empty() || sorted.back() < source.columns * source.rows,
+    const auto entries = static_cast<std::size_t>(source.columns * source.rows);
+    judge.require(sorted.empty() || sorted.back() < entries,
                   [] { return std::string("a bisection beyond the table"); });
-    if (!sorted.empty() && sorted.back() >= source.columns * source.rows)
+    if (!sorted.empty() && sorted.back() >= entries)
         return {};
     if (golden.scene().rank_view != golden::RankView::none && source.bound_bits > 0) {
         const double last_place = std::ldexp(1.0, -formats.view_distance.fraction);

@@ -211,10 +211,10 @@ std::int32_t seen_threshold(double octaves, int fraction, int bits) {
 std::vector<std::uint8_t> highest_generations(const SplitHierarchy& hierarchy, const RankTables& tables,
                                               std::uint32_t highest) {
     std::vector<std::uint8_t> generations(highest, 0);
-    for (std::size_t k = 0; k < hierarchy.splits.size(); ++k) {
-        if (const std::uint32_t entry = tables.bound[tables.order[k]]; entry > 0) {
+    for (const EdgeSplit& split : hierarchy.splits) {
+        if (const std::uint32_t entry = tables.bound[std::size_t{split.row} * tables.columns + split.column]; entry > 0) {
             std::uint8_t& here = generations[entry - 1];
-            here = std::max(here, static_cast<std::uint8_t>(std::min(hierarchy.splits[k].generation, 255)));
+            here = std::max(here, static_cast<std::uint8_t>(std::min(split.generation, 255)));
         }
     }
     for (std::size_t k = highest; k-- > 1;)
@@ -243,9 +243,9 @@ RankTables make_rank_tables(const QuantisedMap& map, const std::vector<TextureTr
     const SplitHierarchy hierarchy = make_split_hierarchy(map, base, formats, radii ? radii->steps : SurfaceSteps{});
     tables.least_error = hierarchy.least_error;
     tables.clashes = count_clashes(hierarchy);
-    tables.order.reserve(hierarchy.splits.size());
+    tables.midpoints.reserve(hierarchy.splits.size());
     for (const EdgeSplit& split : hierarchy.splits)
-        tables.order.push_back(split.row * tables.columns + split.column);
+        tables.midpoints.push_back(split.midpoint);
     if (rank_bits != 0) {
         const LogScale scale = rank_scale(rank_bits);
         EntryTable table(hierarchy, tables.columns, tables.rows);

@@ -40,8 +40,9 @@ struct RankTables {
     std::uint32_t highest_bound_threshold = 0;
     /// Midpoints that share their texel with another, whose entry is the greater one: none on a lattice.
     std::uint64_t clashes = 0;
-    /// Entries of the midpoints in the order of their bisection: the author's choice, from which all entries follow.
-    std::vector<std::uint32_t> order;
+    /// The midpoints in the order of their bisection, on a repeated axis within the map: the author's choice, from which
+    /// all entries follow.
+    std::vector<datapath::TexCoord> midpoints;
     /// The highest generation of the midpoints whose bound exceeds a threshold, by threshold; 0: there are none.
     std::vector<std::uint8_t> generations;
 

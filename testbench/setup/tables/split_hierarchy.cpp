@@ -276,8 +276,9 @@ class Refinement {
 
     void record(const TriangleFit& before, double squared_after, const TexCoord& middle, EdgeSplit& split) const {
         const auto texel = period_.within(middle);
-        split.column = static_cast<std::uint32_t>(texel[0] >> formats_.texture.fraction);
-        split.row = static_cast<std::uint32_t>(texel[1] >> formats_.texture.fraction);
+        split.midpoint = {static_cast<std::uint32_t>(texel[0]), static_cast<std::uint32_t>(texel[1])};
+        split.column = split.midpoint.u >> formats_.texture.fraction;
+        split.row = split.midpoint.v >> formats_.texture.fraction;
         split.squared_fall += before.squared - squared_after;
         split.largest = std::max(split.largest, before.largest);
         ++split.triangles;

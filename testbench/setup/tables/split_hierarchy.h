@@ -14,7 +14,8 @@ struct SurfaceSteps {
 
 /// The bisection of an edge and of all triangles that share it.
 struct EdgeSplit {
-    std::uint32_t column = 0, row = 0;  ///< texel of the midpoint; on a repeated axis within the map
+    datapath::TexCoord midpoint;        ///< on a repeated axis within the map
+    std::uint32_t column = 0, row = 0;  ///< its texel
     std::uint32_t triangles = 0;        ///< number of triangles it replaces by twice as many
     int generation = 0;                 ///< of the midpoint
     double squared_fall = 0;            ///< of the sum of their squared errors, codes^2; negative if it rises

@@ -25,6 +25,13 @@ struct TableFault {
     std::string noticed;
 };
 
+/// Of the k-th bisection.
+std::size_t entry(const MachineSetup& setup, std::size_t k) {
+    const datapath::TexCoord& at = setup.rank_tables.midpoints[k];
+    const int fraction = setup.registers.formats.texture.fraction;
+    return std::size_t{at.v >> fraction} * setup.rank_tables.columns + (at.u >> fraction);
+}
+
 void scale_bounds(MachineSetup& setup, double by) {
     const double steps = std::ldexp(std::log2(by), setup.registers.formats.bound_bits - 5);
     for (std::uint16_t& bound : setup.rank_tables.bound)
@@ -36,20 +43,20 @@ const testing::CaseTable table_faults(
     "golden's own Rank Table: ",
     {TableFault{"bounds 3 % too small", [](MachineSetup& s) { scale_bounds(s, 0.97); }, ".bound"},
      {"bounds 3 % too large", [](MachineSetup& s) { scale_bounds(s, 1.03); }, ".bound"},
-     {"one bound", [](MachineSetup& s) { ++s.rank_tables.bound[s.rank_tables.order[100]]; }, ".bound"},
+     {"one bound", [](MachineSetup& s) { ++s.rank_tables.bound[entry(s, 100)]; }, ".bound"},
      {"a bound where no edge is bisected", [](MachineSetup& s) { s.rank_tables.bound[0] = 1; }, "(0, 0).bound"},
-     {"one rank", [](MachineSetup& s) { --s.rank_tables.rank[s.rank_tables.order[100]]; }, ".rank"},
+     {"one rank", [](MachineSetup& s) { --s.rank_tables.rank[entry(s, 100)]; }, ".rank"},
      {"two ranks exchanged",
       [](MachineSetup& s) {
-          std::swap(s.rank_tables.rank[s.rank_tables.order[0]], s.rank_tables.rank[s.rank_tables.order[300]]);
+          std::swap(s.rank_tables.rank[entry(s, 0)], s.rank_tables.rank[entry(s, 300)]);
       },
       ".rank"},
      {"radii of one", [](MachineSetup& s) { std::fill(s.rank_tables.radius.begin(), s.rank_tables.radius.end(), 1); },
       ".radius"},
-     {"one radius too small", [](MachineSetup& s) { --s.rank_tables.radius[s.rank_tables.order[50]]; }, ".radius"},
-     {"two bisections exchanged", [](MachineSetup& s) { std::swap(s.rank_tables.order[0], s.rank_tables.order[400]); },
+     {"one radius too small", [](MachineSetup& s) { --s.rank_tables.radius[entry(s, 50)]; }, ".radius"},
+     {"two bisections exchanged", [](MachineSetup& s) { std::swap(s.rank_tables.midpoints[0], s.rank_tables.midpoints[400]); },
       "bisection"},
-     {"a bisection left out", [](MachineSetup& s) { s.rank_tables.order.pop_back(); }, "never bisected"},
+     {"a bisection left out", [](MachineSetup& s) { s.rank_tables.midpoints.pop_back(); }, "never bisected"},
      {"the highest threshold", [](MachineSetup& s) { --s.rank_tables.highest_bound_threshold; },
       "highest_bound_threshold"},
      {"its columns", [](MachineSetup& s) { ++s.rank_tables.columns; }, "columns"}},
@@ -84,6 +91,8 @@ const testing::CaseTable derived_tables(
      {"lattice with entries of 6 bits", "formats.rank_bits=6 formats.bound_bits=6 mesh.spacing=64"},
      {"lattice with bounds alone, of 16 bits", "formats.rank_bits=0 formats.bound_bits=16"},
      {"plane off the lattice", "mesh.source=plane mesh.columns=2 mesh.rows=2 map.width=20 map.height=12"},
+     {"plane with edges without an error beside the bisected ones",
+      "mesh.source=plane mesh.columns=2 mesh.rows=1 map.width=1 map.height=64"},
      {"cylinder", "mesh.source=cylinder mesh.columns=8 mesh.rows=2 map.width=32 map.height=8 map.address_u=repeat"},
      {"lattice seen from near",
       "hardware.test_order=cheap_first tests.rank_view=per_point camera.eye=[0.2,0.3,0.5] camera.target=[0.5,0.5,0]"},

@@ -398,6 +398,15 @@ const testing::CaseTable tex_coord_fractions("operands of the Tex Coord Test, ch
                                                  run.require_noticed(run.setup, "tex_coord_fraction");
                                              });
 
+TEST_CASE("a base triangle's periods are known where a period is one LSB") {
+    SetupRun run{testing::with_settings({},
+                                        "map.source=noise map.width=1 map.height=1 map.address_u=repeat "
+                                        "map.address_v=repeat formats.texture_fraction=0 mesh.columns=4 mesh.rows=4")};
+    const SetupResult result = run.check();
+    INFO(result.first_wrong);
+    CHECK(result.passed());
+}
+
 }  // namespace
 
 TEST_CASE("the setup of a job with other formats, a bias, a Highlight Test and a repeating map passes") {
