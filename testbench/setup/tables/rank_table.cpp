@@ -212,7 +212,8 @@ std::vector<std::uint8_t> highest_generations(const SplitHierarchy& hierarchy, c
                                               std::uint32_t highest) {
     std::vector<std::uint8_t> generations(highest, 0);
     for (const EdgeSplit& split : hierarchy.splits) {
-        if (const std::uint32_t entry = tables.bound[std::size_t{split.row} * tables.columns + split.column]; entry > 0) {
+        if (const std::uint32_t entry = tables.bound[std::size_t{split.row} * tables.columns + split.column];
+            entry > 0) {
             std::uint8_t& here = generations[entry - 1];
             here = std::max(here, static_cast<std::uint8_t>(std::min(split.generation, 255)));
         }

@@ -47,15 +47,12 @@ const testing::CaseTable table_faults(
      {"a bound where no edge is bisected", [](MachineSetup& s) { s.rank_tables.bound[0] = 1; }, "(0, 0).bound"},
      {"one rank", [](MachineSetup& s) { --s.rank_tables.rank[entry(s, 100)]; }, ".rank"},
      {"two ranks exchanged",
-      [](MachineSetup& s) {
-          std::swap(s.rank_tables.rank[entry(s, 0)], s.rank_tables.rank[entry(s, 300)]);
-      },
-      ".rank"},
+      [](MachineSetup& s) { std::swap(s.rank_tables.rank[entry(s, 0)], s.rank_tables.rank[entry(s, 300)]); }, ".rank"},
      {"radii of one", [](MachineSetup& s) { std::fill(s.rank_tables.radius.begin(), s.rank_tables.radius.end(), 1); },
       ".radius"},
      {"one radius too small", [](MachineSetup& s) { --s.rank_tables.radius[entry(s, 50)]; }, ".radius"},
-     {"two bisections exchanged", [](MachineSetup& s) { std::swap(s.rank_tables.midpoints[0], s.rank_tables.midpoints[400]); },
-      "bisection"},
+     {"two bisections exchanged",
+      [](MachineSetup& s) { std::swap(s.rank_tables.midpoints[0], s.rank_tables.midpoints[400]); }, "bisection"},
      {"a bisection left out", [](MachineSetup& s) { s.rank_tables.midpoints.pop_back(); }, "never bisected"},
      {"the highest threshold", [](MachineSetup& s) { --s.rank_tables.highest_bound_threshold; },
       "highest_bound_threshold"},
