@@ -15,7 +15,7 @@ Host::Host(const sc_core::sc_module_name& name, Pipeline& machine, const std::ve
     machine.clock.attach(*this);
     to_get_triangle.clocked_by(machine.clock, *this);
     SC_HAS_PROCESS(Host);
-    if (machine.transport() == Transport::blocking && !machine.conducted())
+    if (machine.transport() == Transport::blocking)
         SC_THREAD(send_triangles);
 }
 
@@ -85,18 +85,14 @@ void Host::step() {
     }
 }
 
-void Host::send_next(sc_core::sc_time& delay) {
-    check_tables();
-    datapath::Triangle triangle = next();
-    to_get_triangle->b_transport(triangle, delay);
-    sent_one();
-}
-
 void Host::send_triangles() {
     for (;;) {
         while (sent_ < total()) {
+            check_tables();
             sc_core::sc_time delay = sc_core::SC_ZERO_TIME;
-            send_next(delay);
+            datapath::Triangle triangle = next();
+            to_get_triangle->b_transport(triangle, delay);
+            sent_one();
             wait(delay);
         }
         wait(again_);

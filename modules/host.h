@@ -40,17 +40,12 @@ class Host : public sc_core::sc_module, public CycleProcess {
     /// Sends the triangles again when the simulation continues: another frame.
     void send_again();
 
-    /// For a conducted machine: the triangle that send_next() sends, in functional mode.
-    const datapath::Triangle& next() const { return triangles_[first_ + sent_ * step_]; }
-    void send_next(sc_core::sc_time& delay);
-    /// Notified when the host has triangles again.
-    const sc_core::sc_event& again() const { return again_; }
-
     bool idle() const { return sent_ == total() && to_get_triangle.free(); }
     std::uint64_t sent() const { return sent_; }
     std::uint64_t total() const { return (triangles_.size() + step_ - 1 - first_) / step_; }
 
   private:
+    const datapath::Triangle& next() const { return triangles_[first_ + sent_ * step_]; }
     void start_of_simulation() override;
     void send_triangles();
     void step() override;

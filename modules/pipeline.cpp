@@ -88,7 +88,6 @@ Pipeline::Pipeline(const sc_core::sc_module_name& name, const datapath::Register
       registers_(registers),
       answer_limit_(clock.period() * design.answer_cycles),
       transport_(design.transport),
-      conducted_(design.conducted),
       random_stalls_(design.timing.stalls.per_mille > 0) {
     UnitFactory& units = factory == nullptr ? standard_units() : *factory;
     tessellation_tests.init(design.tests_units, [&](const char* unit_name, std::size_t number) {

@@ -119,7 +119,6 @@ class Pipeline : public sc_core::sc_module {
     const sc_core::sc_time& answer_limit() const { return answer_limit_; }
 
     Transport transport() const { return transport_; }
-    bool conducted() const { return conducted_; }
     const datapath::Registers& registers() const { return registers_; }
 
     /// True if items are held back at random.
@@ -165,7 +164,6 @@ class Pipeline : public sc_core::sc_module {
     const datapath::Registers& registers_;
     const sc_core::sc_time answer_limit_;
     Transport transport_;
-    bool conducted_;
     bool random_stalls_;
     std::vector<Unit*> units_;
     std::vector<TableCache*> caches_;

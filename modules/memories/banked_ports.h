@@ -57,12 +57,6 @@ class BankedPorts {
     /// Sets the table's number of columns.
     void lay_out(std::uint32_t columns) { bank_of_.lay_out(columns); }
 
-    /// Replaces the counts of port slots taken, by bank.
-    void assign_slots(const std::vector<std::uint64_t>& bank_slots) {
-        bank_slots_ = bank_slots;
-        slots_taken_ = std::accumulate(bank_slots.begin(), bank_slots.end(), std::uint64_t{0});
-    }
-
     unsigned latency() const { return latency_; }
     /// Port slots taken: entries times the cycles a port needs for one.
     std::uint64_t slots_taken() const { return slots_taken_; }

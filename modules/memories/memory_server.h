@@ -64,7 +64,6 @@ class MemoryServer : public Unit {
 
     void show_waiting(Signals& signals) const;
     bool held_up() const { return held_up_; }
-    void assign_cycles_held_up(std::uint64_t cycles) { cycles_held_up_ = cycles; }
 
   private:
     struct Served {

@@ -47,12 +47,6 @@ std::uint64_t TableMemory::serve(MemoryRequest& request, std::uint64_t cycle) {
     return answer_at;
 }
 
-void TableMemory::assign(const Figures& figures) {
-    ports_.assign_slots(figures.bank_slots);
-    transactions_ = figures.entries;
-    assign_cycles_held_up(figures.cycles_held_up);
-}
-
 void TableMemory::b_transport(int, MemoryRequest& request, sc_core::sc_time& delay) {
     read(request);
     if (request.is_ok())

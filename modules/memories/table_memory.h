@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <memory>
 #include <systemc>
-#include <vector>
 
 #include "modules/memories/banked_ports.h"
 #include "modules/memories/channel.h"
@@ -45,14 +44,6 @@ class TableMemory : public MemoryServer {
         return channel_ != nullptr ? channel_cycles_ : std::max(ports_.occupied_cycles(), cycles_held_up());
     }
     void trace_signals(Signals& signals) const override;
-
-    /// The statistics of a run without requests (modules/conductor.h).
-    struct Figures {
-        std::vector<std::uint64_t> bank_slots;  ///< port slots taken, by bank
-        std::uint64_t entries = 0;
-        std::uint64_t cycles_held_up = 0;
-    };
-    void assign(const Figures& figures);
 
   private:
     std::uint64_t ready(const MemoryRequest& request) const override;

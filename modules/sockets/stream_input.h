@@ -58,7 +58,6 @@ class StreamInput : public tlm::tlm_target_socket<32, Stream<Payload>>,
     bool holds_back() const { return !pending_.empty(); }
     /// Timed mode: items accepted so far.
     std::uint64_t taken() const { return taken_; }
-    void assign_taken(std::uint64_t taken) { taken_ = taken; }
 
     Payload& front() { return buffer_.front(); }
     const Payload& front() const { return buffer_.front(); }

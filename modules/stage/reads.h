@@ -47,14 +47,6 @@ class Reads {
     std::array<std::uint64_t, most_entries> address_;
 };
 
-/// Receives the reads of each item of a unit, in functional mode.
-class ReadObserver {
-  public:
-    /// part: the part of a triangle, 0 to 14.
-    virtual void read(unsigned part, const Reads& reads) = 0;
-    virtual ~ReadObserver() = default;
-};
-
 /// The entries read, in the order of the addresses, zero-extended.
 using Entries = std::array<std::uint64_t, Reads::most_entries>;
 

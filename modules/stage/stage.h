@@ -29,8 +29,6 @@ class Stage : public Unit {
     void trace_signals(Signals& signals) const override;
     Begun begun() const override;
 
-    void observe_reads(ReadObserver* observer) { read_observer_ = observer; }
-
   protected:
     /// servers: parallel pipelines, used round-robin. memory_latency: of the table that the unit reads.
     Stage(const sc_core::sc_module_name& name, const UnitContext& context, const UnitTiming& timing,
@@ -82,7 +80,6 @@ class Stage : public Unit {
     const sc_core::sc_time latency_;
     bool may_wait_ = false;
     StreamInput<In>* input_ = nullptr;
-    ReadObserver* read_observer_ = nullptr;
     const std::unique_ptr<Machinery> machinery_;
 };
 

@@ -130,10 +130,6 @@ template <class In, class Out>
 void Stage<In, Out>::read_entries(const In& item, Entries& entries, sc_core::sc_time& delay) {
     Reads needed;
     reads(item, needed);
-    if constexpr (is_part<In>) {
-        if (read_observer_ != nullptr)
-            read_observer_->read(item.tag.part, needed);
-    }
     unsigned entry = 0;
     for (unsigned request = 0; request < needed.requests(); ++request) {
         const unsigned count = needed.count(request);

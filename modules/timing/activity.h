@@ -71,22 +71,6 @@ class Activity {
     static constexpr std::size_t most_shares = 12;
     const std::array<Share, most_shares>& shares() const { return shares_; }
 
-    /// The statistics of a run that was not simulated cycle by cycle (modules/conductor.h).
-    struct Figures {
-        std::array<std::uint64_t, states> cycles{};
-        std::array<Share, most_shares> shares{};
-        std::uint64_t items = 0;
-        std::uint64_t high_water_mark = 0;
-        std::uint64_t item_cycles = 0;
-    };
-    void assign(const Figures& figures) {
-        cycles_ = figures.cycles;
-        shares_ = figures.shares;
-        items_in_ = items_out_ = figures.items;
-        high_water_mark_ = figures.high_water_mark;
-        item_cycles_ = figures.item_cycles;
-    }
-
     std::uint64_t items_in() const { return items_in_; }
     std::uint64_t items_out() const { return items_out_; }
     std::uint64_t level() const { return level_; }

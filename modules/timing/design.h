@@ -15,8 +15,6 @@ struct Design : DesignOptions {
     Timing timing;
     /// The platform's clock, at whose rising edges cycles begin. Null: every timing.cycle_picoseconds, from time 0.
     const sc_core::sc_clock* clock = nullptr;
-    /// In functional mode a Conductor (modules/conductor.h) sends the triangles of the host and of the queue.
-    bool conducted = false;
     /// Cycles for which a memory that a UnitFactory has joined, or the device's bus, may leave a request unanswered
     /// (sockets/answer_watch.h); 0: no limit.
     unsigned answer_cycles = 1'000'000;

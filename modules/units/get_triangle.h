@@ -44,7 +44,6 @@ class GetTriangle : public Unit {
     std::uint64_t queue_triangles() const { return queue_triangles_; }
     /// Timed mode: vertices, normals and edges sent to Calculate New P.
     std::uint64_t parts_sent() const { return parts_sent_; }
-    void assign_parts_sent(std::uint64_t parts) { parts_sent_ = parts; }
 
     std::string describe_contents() const override;
     std::uint64_t occupied_cycles() const override {

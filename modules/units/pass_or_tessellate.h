@@ -44,7 +44,6 @@ class PassOrTessellate : public DecidingUnit {
     std::size_t most_ahead_of_parts() const {
         return std::max({most_ahead_of_parts_, ahead_of_parts_, std::size_t{from_get_triangle.taken() > 0}});
     }
-    void assign_most_ahead_of_parts(std::size_t most) { most_ahead_of_parts_ = most; }
 
     std::string describe_contents() const override;
     std::uint64_t occupied_cycles() const override { return activity_.items_out() * timing_.interval; }

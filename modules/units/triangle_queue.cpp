@@ -24,8 +24,7 @@ TriangleQueue::TriangleQueue(const sc_core::sc_module_name& name, const UnitCont
       latency_(clock_.period() * timing_.latency),
       record_bytes_(off_chip_memory.entry_bytes()),
       store_(design_.order),
-      leaving_(timing_),
-      conducted_(context.design.conducted) {
+      leaving_(timing_) {
     design_.watermark = std::max<std::size_t>(design_.watermark, 1);
     from_tessellation.register_b_transport<&TriangleQueue::b_transport>(*this);
     from_tessellation.clocked_by(clock_, *this, timing_.buffer, context.timing().stalls);
@@ -37,10 +36,6 @@ TriangleQueue::TriangleQueue(const sc_core::sc_module_name& name, const UnitCont
 }
 
 void TriangleQueue::b_transport(datapath::Triangle& triangle, sc_core::sc_time& delay) {
-    if (conducted_) {
-        keep(triangle);
-        return;
-    }
     store_.push(triangle);
     ++taken_;
     high_water_mark_ = std::max(high_water_mark_, store_.size());
@@ -48,22 +43,6 @@ void TriangleQueue::b_transport(datapath::Triangle& triangle, sc_core::sc_time& 
     tell_level(delay);
     if (!sending_)
         arrival_.notify(sc_core::SC_ZERO_TIME);
-}
-
-void TriangleQueue::keep(const datapath::Triangle& triangle) {
-    arrived_.place[arrived_.count++] = kept_.put(triangle);
-    ++taken_;
-}
-
-void TriangleQueue::send(std::uint32_t place, sc_core::sc_time& delay) {
-    to_get_triangle.transport(kept_.at(place), delay);
-    kept_.release(place);
-}
-
-void TriangleQueue::assign(const Levels& levels) {
-    high_water_mark_ = levels.most;
-    on_chip_high_water_mark_ = levels.most;
-    history_ = levels.history;
 }
 
 /// Functional mode.

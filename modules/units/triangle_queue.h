@@ -1,10 +1,8 @@
 #pragma once
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <systemc>
-#include <utility>
 #include <vector>
 
 #include "modules/sockets/items.h"
@@ -14,7 +12,6 @@
 #include "modules/stage/unit.h"
 #include "modules/timing/elastic_pipeline.h"
 #include "modules/timing/level_history.h"
-#include "modules/units/triangle_places.h"
 #include "modules/units/triangle_store.h"
 
 namespace tessera {
@@ -40,7 +37,7 @@ class TriangleQueue : public Unit {
 
     bool below_watermark() const { return waiting() < design_.watermark; }
 
-    bool drained() const { return waiting() == 0 && !sending_ && kept_.empty(); }
+    bool drained() const { return waiting() == 0 && !sending_; }
     /// Functional mode: notified when the last waiting triangle has gone through the machine.
     const sc_core::sc_event& emptied() const { return emptied_; }
     /// Triangles on chip, off chip, and in transit.
@@ -63,28 +60,12 @@ class TriangleQueue : public Unit {
     /// A triangle had to be spilled while off-chip memory was full.
     bool off_chip_memory_full() const { return off_chip_memory_full_; }
 
-    /// Conducted: the number of triangles that have arrived since the last call, and where they are kept.
-    struct Arrived {
-        std::array<std::uint32_t, 4> place{};
-        unsigned count = 0;
-    };
-    Arrived take_arrived() { return std::exchange(arrived_, {}); }
-    const datapath::Triangle& kept(std::uint32_t place) { return kept_.at(place); }
-    /// Conducted: sends the triangle kept in this place.
-    void send(std::uint32_t place, sc_core::sc_time& delay);
-    struct Levels {
-        std::uint64_t most = 0;  ///< all on chip
-        LevelHistory history;
-    };
-    void assign(const Levels& levels);
-
     std::string describe_contents() const override;
     std::uint64_t occupied_cycles() const override { return taken_ * timing_.interval; }
     void trace_signals(Signals& signals) const override;
 
   private:
     void b_transport(datapath::Triangle& triangle, sc_core::sc_time& delay);
-    void keep(const datapath::Triangle& triangle);
     void send_waiting();
     void tell_level(sc_core::sc_time& delay);
 
@@ -120,10 +101,6 @@ class TriangleQueue : public Unit {
     bool overflowed_ = false;
     bool off_chip_memory_full_ = false;
     LevelHistory history_;
-
-    const bool conducted_;
-    TrianglePlaces kept_;
-    Arrived arrived_;
 
     sc_core::sc_event arrival_{"arrival"};
     sc_core::sc_event emptied_{"emptied"};

@@ -83,8 +83,7 @@ void one_frame(benchmark::State& state, Simulation& simulation) {
         simulation.monitor.mesh.triangles.clear();
         simulation.host.send_again();
         // Between two frames the other simulations advance simulated time: a timed frame begins at the present cycle.
-        const HostedMachine& machine = simulation.last_machine();
-        const std::uint64_t first_cycle = machine.conductor ? machine.last_cycle() : machine.pipeline.clock.cycle();
+        const std::uint64_t first_cycle = simulation.last_machine().pipeline.clock.cycle();
         if (!simulation.run().empty())
             state.SkipWithError("the simulation did not drain");
         if (timed)
@@ -177,11 +176,6 @@ MachineSetup in_timed_mode(MachineSetup setup) {
     return setup;
 }
 
-MachineSetup by_schedule(MachineSetup setup) {
-    setup.scheduled = true;
-    return setup;
-}
-
 }  // namespace
 }  // namespace tessera
 
@@ -195,8 +189,6 @@ int sc_main(int argc, char** argv) {
     sc_core::sc_report_handler::set_actions(sc_core::SC_ID_INSTANCE_EXISTS_, sc_core::SC_DO_NOTHING);
     const tessera::MachineSetup timed_setup = tessera::in_timed_mode(setup);
     tessera::Simulation timed_simulation(timed_setup, std::uint64_t{1} << 40);
-    const tessera::MachineSetup scheduled_setup = tessera::by_schedule(timed_setup);
-    tessera::Simulation scheduled_simulation(scheduled_setup, std::uint64_t{1} << 40);
     const tessera::MachineSetup modern_setup = tessera::benchmark_setup(tessera::DesignPreset::modern, map_side);
     tessera::Simulation modern_simulation(modern_setup, std::uint64_t{1} << 40);
     const tessera::MachineSetup modern_timed_setup = tessera::in_timed_mode(modern_setup);
@@ -220,7 +212,6 @@ int sc_main(int argc, char** argv) {
     if (platform)
         add("device_functional", [&](benchmark::State& state) { tessera::device_frame(state, *platform); });
     add_frames("timed_mode", timed_simulation);
-    add_frames("timed_mode_by_schedule", scheduled_simulation);
     add_frames("modern_functional_mode", modern_simulation);
     add_frames("modern_timed_mode", modern_timed_simulation);
     benchmark::RunSpecifiedBenchmarks();

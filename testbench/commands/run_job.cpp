@@ -28,7 +28,6 @@
 #include "testbench/job/dump_job.h"
 #include "testbench/job/read_job.h"
 #include "testbench/machine/design_remarks.h"
-#include "testbench/machine/engine.h"
 #include "testbench/machine/fingerprint.h"
 #include "testbench/machine/inputs.h"
 #include "testbench/machine/simulation.h"
@@ -76,7 +75,6 @@ Loaded load(const Job& asked) {
     Loaded loaded{load_inputs(asked), {}};
     const Inputs& inputs = loaded.inputs;
     loaded.setup = make_setup(inputs.resolved.job, inputs.mesh, inputs.map);
-    choose_engine(inputs.resolved.job, loaded.setup);
     std::vector<std::string> remarks;
     for (const std::string& repair : inputs.mesh.repairs)
         remarks.push_back("mesh: " + repair);

@@ -241,8 +241,6 @@ std::string summary(const MachineSetup& setup, const Simulation& simulation, con
     const bool timed = setup.design.transport == Transport::non_blocking;
     if (timed)
         text += timing_rows(simulation);
-    if (timed)
-        text += row("engine", fmt::format("{}: {}", setup.scheduled ? "schedule" : "clocked", setup.engine_reason));
     text += row(timed ? "timed mode" : "functional mode",
                 fmt::format("simulated in {:.2f} s, {:.2f} million edges a second{}", seconds,
                             static_cast<double>(edges) / seconds / 1e6,

@@ -22,7 +22,6 @@ using datapath::SummedHeightUnit;
 using datapath::Triangulation;
 enum class Mode { functional, timed };
 /// The engine that counts the cycles of timed mode.
-enum class Engine { any, schedule, clocked };
 enum class DesignPreset { paper, modern };
 
 /// Whether mesh.file names a mesh of this source.
@@ -97,9 +96,7 @@ struct Job {
         std::int64_t machines = 1;                  // side by side
     } hardware;
 
-    struct TimingSettings : Timing {  // timed mode: every unit's and memory's, see modules/timing/timing.h
-        Engine engine = Engine::any;
-    } timing;
+    Timing timing;  // timed mode: every unit's and memory's, see modules/timing/timing.h
 
     struct Check {
         bool golden = true;      // scoreboard: every edge against the golden model

@@ -118,15 +118,6 @@ constexpr std::string_view name_of(Mode value) {
     return {};
 }
 
-constexpr std::string_view name_of(Engine value) {
-    switch (value) {
-        case Engine::any: return "auto";
-        case Engine::schedule: return "schedule";
-        case Engine::clocked: return "clocked";
-    }
-    return {};
-}
-
 /// All names of an enumeration, in the enumerators' order; enumerators count from 0 without gaps.
 template <typename Enum>
 std::vector<std::string_view> names_of() {

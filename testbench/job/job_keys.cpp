@@ -243,7 +243,6 @@ std::vector<KeyTable> declare_keys() {
         key.add("machines", &Hardware::machines, "-", between(1, 16), "Number of complete machines, each with its own tables and off-chip memory; base triangle k goes to machine k modulo their number");
     });
     list.table("timing", &Job::timing, "Timed mode: the datasheet figures of every unit and memory.", [](const auto& key) {
-        key.add("engine", &Job::TimingSettings::engine, "Timing engine; the results are the same. schedule: computes each item's cycles from those of earlier items, several times as fast; clocked: calls the units cycle by cycle; auto: schedule if the design and the run's options support it (modules/schedule/README.md)");
         declare_timing_keys(key);
     });
     list.table("check", &Job::check, "What a run checks.", [](const auto& key) {

@@ -11,20 +11,10 @@ std::string numbered(const char* name, std::size_t number) {
     return number == 0 ? name : name + ("_" + std::to_string(number));
 }
 
-/// With a schedule, the machine runs in functional mode.
-Design design_of(const MachineSetup& setup) {
-    Design design = setup.design;
-    if (setup.scheduled) {
-        design.transport = Transport::blocking;
-        design.conducted = true;
-    }
-    return design;
-}
-
 }  // namespace
 
 HostedMachine::HostedMachine(const MachineSetup& setup, std::size_t number, MeshMonitor& monitor, UnitFactory* units)
-    : pipeline(numbered("tessera", number).c_str(), setup.registers, design_of(setup), units),
+    : pipeline(numbered("tessera", number).c_str(), setup.registers, setup.design, units),
       host(numbered("host", number).c_str(), pipeline, setup.base_triangles, tables_of(setup), number, setup.machines),
       rasteriser(numbered("rasteriser", number).c_str(), pipeline.clock, setup.design.timing.stalls),
       decisions(setup),
@@ -35,15 +25,9 @@ HostedMachine::HostedMachine(const MachineSetup& setup, std::size_t number, Mesh
     pipeline.lighting.to_rasteriser.bind(rasteriser.from_lighting);
     pipeline.pass_or_tessellate.decided.bind(decisions);
     pipeline.pass_or_tessellate.finished.bind(*this);
-    if (setup.scheduled)
-        conductor.emplace(numbered("conductor", number).c_str(), pipeline, host, rasteriser, setup.design);
 }
 
 void HostedMachine::finish(std::uint64_t cycles) {
-    if (conductor) {
-        conductor->finish(cycles);
-        return;
-    }
     for (Unit* unit : pipeline.units())
         unit->activity().finish(cycles);
     pipeline.triangle_queue.history().finish(cycles);

@@ -1,10 +1,8 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <tlm>
 
-#include "modules/conductor.h"
 #include "modules/host.h"
 #include "modules/rasteriser.h"
 #include "testbench/machine/machine_setup.h"
@@ -29,10 +27,8 @@ class HostedMachine : private tlm::tlm_analysis_if<datapath::Triangle> {
     Rasteriser rasteriser;
     Decisions decisions;
 
-    std::optional<Conductor> conductor;  ///< if setup.scheduled
-
     /// Timed mode: the last cycle with any activity.
-    std::uint64_t last_cycle() const { return conductor ? conductor->last_cycle() : pipeline.clock.last_cycle(); }
+    std::uint64_t last_cycle() const { return pipeline.clock.last_cycle(); }
     /// Timed mode: call at the end of a run of `cycles` cycles.
     void finish(std::uint64_t cycles);
 

@@ -1,6 +1,4 @@
 #pragma once
-#include <string>
-
 #include "modules/timing/design.h"
 #include "testbench/job/job.h"
 #include "testbench/setup/mesh/base_mesh.h"
@@ -13,9 +11,7 @@ namespace tessera {
 struct MachineSetup : PreparedScene {
     ModelScale model_scale;  ///< scale and centre
     Design design;
-    unsigned machines = 1;      ///< of that design, side by side; base triangle b goes to machine b modulo this number
-    bool scheduled = false;     ///< timed mode by a schedule (modules/conductor.h), not by the clock
-    std::string engine_reason;  ///< reason for the choice
+    unsigned machines = 1;  ///< of that design, side by side; base triangle b goes to machine b modulo this number
     bool summed_height_bits_chosen = false;  ///< by `auto`
 };
 

@@ -188,9 +188,6 @@ inline const std::map<std::string, std::vector<Remedy>>& remedies() {
          }},
         {"machine",
          {
-             {"run mode=timed timing.engine=schedule check.reads=true", "set {0} = {2}", ""},
-             {"run mode=timed timing.engine=schedule check.reads=true", R"(or timing.engine = "auto")", ""},
-             {"run mode=timed timing.engine=schedule limits.cycles_without_progress=1000", "set {0} = {2}", ""},
              {"run limits.triangles=100", "raise the thresholds under [tests]", "run limits.triangles=100 tests.normal_threshold=1 tests.summed_height_threshold=100"},
              {"run limits.triangles=100", "lower tests.generation_limit", "run limits.triangles=100 tests.generation_limit=1"},
              {"run limits.triangles=100 mode=timed", "or raise the limit", "run limits.triangles=1000"},

@@ -36,17 +36,6 @@ void expect_no_allocation_checked(const Job& job) {
     expect_no_allocation(setup, simulation);
 }
 
-void expect_no_allocation_scheduled(unsigned tests_units) {
-    Job job;
-    job.mode = Mode::timed;
-    job.hardware.tests_units = tests_units;
-    job.timing.stalls = {1, 100, 16};
-    MachineSetup setup = setup_of(job);
-    setup.scheduled = true;
-    Simulation simulation(setup, 1'000'000);
-    expect_no_allocation(setup, simulation);
-}
-
 }  // namespace
 
 TEST_CASE("functional mode allocates nothing per edge") {
@@ -88,12 +77,4 @@ TEST_CASE("timed mode with three tests units, stalls and a queue that spills all
     Simulation simulation(setup, 1'000'000);
     expect_no_allocation(setup, simulation);
     CHECK(simulation.pipeline.triangle_queue.spilled() > 1000);
-}
-
-TEST_CASE("a schedule allocates nothing per edge") {
-    expect_no_allocation_scheduled(1);
-}
-
-TEST_CASE("a schedule of three tests units allocates nothing per edge") {
-    expect_no_allocation_scheduled(3);
 }

@@ -85,7 +85,6 @@ struct DrainedWatch : sc_core::sc_module {
 struct Drained {
     std::string name;
     std::string settings;
-    bool scheduled = false;
     unsigned machines = 1;
 };
 
@@ -93,20 +92,18 @@ const CaseTable<Drained> drained(
     "drained: notified once for each frame, when all of it is lit: ",
     {
         {"timed", "mode=timed"},
-        {"timed, by a schedule", "mode=timed", true},
-        {"timed, by a schedule, three Tessellation Tests units", "mode=timed hardware.tests_units=3", true},
+        {"timed, three Tessellation Tests units", "mode=timed hardware.tests_units=3"},
         {"timed, random stalls", "mode=timed timing.stalls_seed=3 timing.stalls_per_mille=300 timing.stalls_longest=9"},
         {"timed, modern design", "mode=timed hardware.design=modern"},
         {"timed, a queue that spills", "mode=timed hardware.queue_capacity=4"},
-        {"timed, two machines", "mode=timed", false, 2},
+        {"timed, two machines", "mode=timed", 2},
         {"functional", "mode=functional"},
         {"functional, modern design", "mode=functional hardware.design=modern"},
         {"functional, watermark 8", "mode=functional hardware.queue_watermark=8"},
-        {"functional, three machines", "mode=functional", false, 3},
+        {"functional, three machines", "mode=functional", 3},
     },
     [](const Drained& row) {
         MachineSetup setup = setup_of(with_settings(full_split_job(2, 2), row.settings));
-        setup.scheduled = row.scheduled;
         setup.machines = row.machines;
         Simulation simulation(setup, 1'000'000);
         std::vector<std::unique_ptr<DrainedWatch>> watches;

@@ -1,29 +1,35 @@
-#include "modules/schedule/machine.h"
+#include "testbench/prove/schedule/machine.h"
 
 #include <algorithm>
 
 namespace tessera::schedule {
 
 Machine::Machine(const Plan& plan)
-    : Timetable(plan),
+    : plan_(plan),
+      source_(plan.source),
+      backend_(plan, source_),
       calculate_new_p_(plan.calculate_new_p),
       displace_vertex_(plan.displace_vertex),
       transform_(plan.transform),
-      calculate_new_u_(plan.tests[0].calculate_new_u),
-      tex_coord_test_(plan.tests[0].tex_coord_test),
-      height_test_(plan.tests[0].height_test),
-      normal_test_(plan.tests[0].normal_test),
-      view_test_(plan.tests[0].view_test),
-      corners_(plan.tests[0].view_test_corners),
-      results_{Input(plan.tests[0].results[0]), Input(plan.tests[0].results[1]), Input(plan.tests[0].results[2]),
-               Input(plan.tests[0].results[3])},
+      calculate_new_u_(plan.tests.calculate_new_u),
+      tex_coord_test_(plan.tests.tex_coord_test),
+      height_test_(plan.tests.height_test),
+      normal_test_(plan.tests.normal_test),
+      view_test_(plan.tests.view_test),
+      corners_(plan.tests.view_test_corners),
+      results_{Input(plan.tests.results[0]), Input(plan.tests.results[1]), Input(plan.tests.results[2]),
+               Input(plan.tests.results[3])},
       displacement_map_(plan.displacement_map),
       displacement_map_for_tests_(plan.displacement_map_for_tests),
       normal_map_(plan.normal_map),
       height_table_(plan.height_table),
+      join_triangles_(plan.join_triangles),
       join_parts_(plan.join_parts),
-      join_edges_(plan.tests[0].join_edges),
+      join_edges_(plan.tests.join_edges),
+      ahead_of_parts_(plan.join_triangles.depth),
       join_starts_(plan.join_places) {
+    has(get_triangle, get_triangle_states_, get_triangle_level_);
+    backend_.for_each_unit([this](Unit unit, States& states, Level& level) { has(unit, states, level); });
     has(calculate_new_p, calculate_new_p_);
     has(displace_vertex, displace_vertex_);
     has(transform, transform_);
@@ -175,7 +181,6 @@ void Machine::test(unsigned part, const Facts& facts) {
 void Machine::join(const Facts& facts) {
     joining_.start = backend_.start(std::max(joining_.geometry, joining_.tests));
     join_starts_.add(joining_.start);
-    joining_.edges[0] = joining_.tests;
     backend_.decide(joining_, facts);
     joins_.add(joining_);
     if (joining_.has_edges)
@@ -219,7 +224,24 @@ void Machine::account_joins(Cycle first_edge) {
 
 void Machine::finish(Cycle end) {
     account_joins(end);
-    Timetable::finish(end);
+    source_.finish(end);
+    for (const Account& account : accounts_)
+        if (account.states != nullptr)
+            account.states->until(end, State::starved);
+}
+
+Figures Machine::figures(Unit unit) const {
+    if (unit == triangle_queue)
+        return {&source_.states(), source_.pushed(), source_.most(), source_.item_cycles()};
+    const auto& [states, level] = accounts_[unit];
+    return {states, level->items(), level->most(), level->item_cycles()};
+}
+
+void Machine::observe(Unit unit, ItemObserver* observer) {
+    if (unit == triangle_queue)
+        source_.observe(observer);
+    else
+        accounts_[unit].level->observe(observer);
 }
 
 }  // namespace tessera::schedule

@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "modules/schedule/sequence.h"
-#include "modules/schedule/stage.h"
 #include "modules/timing/level_history.h"
+#include "testbench/prove/schedule/sequence.h"
+#include "testbench/prove/schedule/stage.h"
 
 namespace tessera::schedule {
 
@@ -46,10 +46,6 @@ class Source {
     };
     /// The next triangle for Get Triangle, which can begin one from cycle `free` on.
     Next next(Cycle free);
-
-    /// For a Get Triangle that is evaluated cycle by cycle and is free in cycle `now`: `now` if it can begin a
-    /// triangle, else the cycle in which to ask again; ~0: after the next offer() or send().
-    Cycle due(Cycle now);
 
     /// Completes the figures at the end of a run.
     void finish(Cycle end);

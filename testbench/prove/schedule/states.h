@@ -4,9 +4,9 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "modules/schedule/history.h"
-#include "modules/schedule/units.h"
 #include "modules/timing/state.h"
+#include "testbench/prove/schedule/history.h"
+#include "testbench/prove/schedule/units.h"
 
 namespace tessera::schedule {
 

@@ -1,14 +1,14 @@
 #pragma once
 #include <array>
 
-#include "modules/schedule/source.h"
-#include "modules/schedule/stage.h"
-#include "modules/schedule/table.h"
-#include "modules/schedule/units.h"
+#include "testbench/prove/schedule/source.h"
+#include "testbench/prove/schedule/stage.h"
+#include "testbench/prove/schedule/table.h"
+#include "testbench/prove/schedule/units.h"
 
 namespace tessera::schedule {
 
-/// A Tessellation Tests unit.
+/// Tessellation Tests.
 struct TestsPlan {
     StagePlan calculate_new_u, tex_coord_test, height_test, normal_test, view_test;
     InputPlan view_test_corners;
@@ -21,8 +21,7 @@ struct Plan {
     SourcePlan source;
     PipelinePlan get_triangle;
     StagePlan calculate_new_p, displace_vertex, transform;
-    unsigned tests_units = 1;  ///< 1 or 3
-    std::array<TestsPlan, most_tests_units> tests;
+    TestsPlan tests;
     InputPlan join_triangles, join_parts;  ///< of Pass or Tessellate
     unsigned join_places = 1;              ///< for triangles that are not complete
     PipelinePlan join;
@@ -31,8 +30,7 @@ struct Plan {
     StagePlan lighting;
     InputPlan rasteriser;
     TablePlan displacement_map, normal_map, height_table;
-    TablePlan displacement_map_for_tests;        ///< second memory of the height test, if it has its own
-    bool heights_from_displacement_map = false;  ///< the second memory is the displacement map itself
+    TablePlan displacement_map_for_tests;  ///< second memory of the height test, if it has one
 };
 
 }  // namespace tessera::schedule

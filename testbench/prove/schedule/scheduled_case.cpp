@@ -1,4 +1,4 @@
-#include "testbench/prove/engines/scheduled_case.h"
+#include "testbench/prove/schedule/scheduled_case.h"
 
 #include "modules/timing/all_units.h"
 #include "testbench/common/random.h"
@@ -55,7 +55,8 @@ RandomCase make_scheduled_case(std::uint64_t seed) {
     hardware.machines = random.chance(10) ? 2 : 1;
     made.job.tests.rank_view = RankView::none;
     choose_timing(random, made.job.timing);
-    hardware.tests_units = random.coin() ? 1 : 3;
+    hardware.tests_units = 1;
+    hardware.one_texel_from_map = false;
     return made;
 }
 

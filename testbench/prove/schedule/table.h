@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "modules/schedule/stage.h"
+#include "testbench/prove/schedule/stage.h"
 
 namespace tessera::schedule {
 
@@ -64,6 +64,7 @@ class Ports {
     std::uint64_t entries() const { return entries_; }
     /// Cycles in which the oldest request waited for a port.
     Cycle held_up() const { return held_up_; }
+    unsigned ports_of_a_bank() const { return plan_.ports; }
     /// Port slots taken, by bank.
     const std::vector<std::uint64_t>& bank_slots() const { return bank_slots_; }
     States& states() { return states_; }

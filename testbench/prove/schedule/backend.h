@@ -1,18 +1,16 @@
 #pragma once
 #include <algorithm>
-#include <array>
 
-#include "modules/schedule/facts.h"
-#include "modules/schedule/plan.h"
+#include "testbench/prove/schedule/facts.h"
+#include "testbench/prove/schedule/plan.h"
 
 namespace tessera::schedule {
 
 /// A triangle in Pass or Tessellate.
 struct Join {
-    Cycle first_edge = 0;                         ///< arrival of the first edge, if before `open`
-    Cycle open = 0;                               ///< when the triangle got a place
-    Cycle geometry = 0, tests = 0;                ///< last part of each branch
-    std::array<Cycle, most_tests_units> edges{};  ///< last edge from each Tessellation Tests unit
+    Cycle first_edge = 0;           ///< arrival of the first edge, if before `open`
+    Cycle open = 0;                 ///< when the triangle got a place
+    Cycle geometry = 0, tests = 0;  ///< last part of each branch
     Cycle start = 0, finish = 0, depart = 0;
     Unit to = nobody;
     bool has_edges = false;
@@ -24,8 +22,7 @@ struct Join {
 class Backend {
   public:
     Backend(const Plan& plan, Source& source)
-        : tests_units_(plan.tests_units),
-          tessellation_plan_(plan.tessellation),
+        : tessellation_plan_(plan.tessellation),
           source_(source),
           join_(plan.join),
           join_level_(plan.join_places + plan.join.stages),
@@ -58,8 +55,7 @@ class Backend {
         join_states_.until(join.open, State::starved, transform);
         join_states_.until(std::min(join.geometry, join.tests), State::starved);
         if (join.geometry <= join.tests)
-            for (unsigned k = 0; k < tests_units_; ++k)
-                join_states_.until(join.edges[k], State::starved, of_tests(k, collect_tests));
+            join_states_.until(join.tests, State::starved, collect_tests);
         else
             join_states_.until(join.geometry, State::starved, transform);
         join_states_.until(join.finish, State::busy);
@@ -107,7 +103,6 @@ class Backend {
         return taken;
     }
 
-    unsigned tests_units_;
     PipelinePlan tessellation_plan_;
     Source& source_;
     Pipeline join_;

@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "modules/schedule/history.h"
-#include "modules/schedule/states.h"
 #include "modules/timing/random_stalls.h"
+#include "testbench/prove/schedule/history.h"
+#include "testbench/prove/schedule/states.h"
 
 namespace tessera::schedule {
 

@@ -2,12 +2,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "modules/schedule/calls.h"
-#include "modules/schedule/link.h"
-#include "modules/schedule/shared_table.h"
-#include "modules/schedule/source.h"
-#include "modules/schedule/stage.h"
-#include "modules/schedule/table.h"
+#include "testbench/prove/schedule/source.h"
+#include "testbench/prove/schedule/stage.h"
+#include "testbench/prove/schedule/table.h"
 
 // The recurrences of a schedule, each with cycles derived by hand.
 
@@ -17,22 +14,6 @@ using namespace tessera::schedule;
 namespace {
 
 constexpr std::uint8_t no_banks[4] = {};
-
-/// The units called in the next cycle in which some unit is due.
-std::vector<unsigned> called(Calls& calls) {
-    std::vector<unsigned> units;
-    while (calls.any())
-        units.push_back(calls.next());
-    return units;
-}
-
-/// Reads a shared table.
-struct Reader {
-    unsigned taken = 0;
-    std::vector<Cycle> answers;
-    void accepted() { ++taken; }
-    void answered(std::uint64_t, Cycle cycle) { answers.push_back(cycle); }
-};
 
 class Times : public ItemObserver {
   public:
@@ -317,85 +298,4 @@ TEST_CASE("schedule: the queue's levels and item times") {
     CHECK(source.highest() == 2);
     CHECK(source.history().highest()[6] == 2);
     CHECK(source.states().cycles_in(State::blocked) == 4);
-}
-
-TEST_CASE("schedule: in each cycle the first due unit is called, and again if it is woken") {
-    using Units = std::vector<unsigned>;
-    Calls calls;
-    calls.wake_at(4, 7);
-    calls.wake_at(2, 7);
-    calls.wake_at(3, 5);
-    calls.wake_at(1, never);
-    REQUIRE(calls.advance());
-    CHECK(calls.now() == 5);
-    CHECK(called(calls) == Units{3});
-    REQUIRE(calls.advance());
-    CHECK(calls.now() == 7);
-    CHECK(calls.next() == 2);
-    calls.wake(5);
-    calls.wake_at(1, 6);  // past: called now
-    CHECK(called(calls) == Units{1, 4, 5});
-    CHECK_FALSE(calls.advance());
-}
-
-TEST_CASE("schedule: a unit with a distant cycle may be called early, but not late") {
-    Calls calls;
-    for (const Cycle cycle : {Cycle{1000}, Cycle{100'000}, Cycle{100'001}}) {
-        for (unsigned early = 0; calls.now() < cycle; ++early) {
-            REQUIRE(early < 200);
-            calls.wake_at(0, cycle);
-            REQUIRE(calls.advance());
-            CHECK(called(calls) == std::vector<unsigned>{0});
-        }
-        CHECK(calls.now() == cycle);
-    }
-}
-
-TEST_CASE("schedule: a link holds back an item while its buffer is full") {
-    Calls calls;
-    Link link(calls, {1, {}}, 1, 0);
-    CHECK(link.send({7, 3}));
-    CHECK_FALSE(link.send({7, 4}));
-    CHECK(called(calls) == std::vector<unsigned>{0});
-    link.admit();
-    CHECK_FALSE(link.free());
-    calls.wake_at(0, 9);
-    REQUIRE(calls.advance());
-    CHECK(link.front().pass() == 7);
-    CHECK(link.front().part() == 3);
-    CHECK(link.since() == 0);
-    link.pop();
-    CHECK(link.free());
-    CHECK(link.front().part() == 4);
-    CHECK(link.since() == 9);
-    CHECK(link.taken() == 2);
-    CHECK(called(calls) == std::vector<unsigned>{0, 1});  // the producer, too
-}
-
-TEST_CASE("schedule: readers of a table with a full buffer take turns") {
-    using Answers = std::vector<Cycle>;
-    Calls calls;
-    SharedTable<Reader> table(calls, {{1, {}}, 1, 1, 2, 3, 0, 4}, 0);  // two cycles an entry
-    Reader readers[3];
-    const auto offer = [&](unsigned k) { return table.offer({&readers[k], no_banks, 1, true}, k); };
-    CHECK(offer(0));
-    table.step();  // served at once
-    CHECK(offer(0));
-    CHECK_FALSE(offer(2));
-    CHECK_FALSE(offer(1));
-    do {
-        while (calls.any()) {
-            calls.next();
-            table.step();
-            if (calls.now() == 2)
-                CHECK_FALSE(offer(0));
-        }
-    } while (calls.advance());
-    CHECK(readers[0].answers == Answers{0 + 1 + 3, 2 + 1 + 3, 8 + 1 + 3});
-    CHECK(readers[1].answers == Answers{4 + 1 + 3});
-    CHECK(readers[2].answers == Answers{6 + 1 + 3});
-    CHECK(readers[0].taken == 1);  // later than the offer
-    CHECK(table.ports().held_up() == 8);
-    CHECK(table.ports().level().items() == 5);
-    CHECK(table.ports().entries() == 5);
 }

@@ -32,7 +32,7 @@ struct Facts {
     using Reads = std::array<PartReads, parts_of_a_triangle>;
 
     std::uint16_t parts = 0;  ///< parts that are not known yet
-    bool tested = true;       ///< the vertices and edges go to the tests
+    bool tested = false;      ///< the vertices and edges go to the tests
     Reads displace_vertex, height_test, normal_test;
     Way way = Way::dropped;
     unsigned children = 0;

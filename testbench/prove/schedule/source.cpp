@@ -1,4 +1,4 @@
-#include "modules/schedule/source.h"
+#include "testbench/prove/schedule/source.h"
 
 #include <algorithm>
 
@@ -101,14 +101,6 @@ Source::Next Source::next(Cycle free) {
     }
     account(next.begin);
     return next;
-}
-
-Cycle Source::due(Cycle now) {
-    evaluate_pops();
-    Cycle due = begun_ < departs_.count() ? std::max(now, cycle_of(departs_[begun_])) : ~Cycle{0};
-    if (host_triangles_ > 0 && (host_taken_ > now || below_watermark(now)))
-        due = std::min(due, std::max(now, host_taken_));
-    return due;
 }
 
 /// Accounts for the queue's level after each push up to cycle `end`. Later departures may not be known yet.

@@ -1,0 +1,125 @@
+#include "testbench/prove/schedule/recorded_units.h"
+
+#include <utility>
+
+#include "modules/datapath/cull.h"
+#include "testbench/common/error.h"
+
+namespace tessera::schedule {
+
+namespace {
+
+/// A unit that records the reads of its items.
+template <class Its, class Item>
+class Recorded : public Its {
+  public:
+    template <class... More>
+    Recorded(const sc_core::sc_module_name& name, const UnitContext& context, PassRecord& record,
+             PassRecord::Reader reader, std::vector<BankOfEntry> memories, More... more)
+        : Its(name, context, more...), record_(record), reader_(reader), memories_(std::move(memories)) {}
+
+  protected:
+    void reads(const Item& item, Reads& reads) const override {
+        Its::reads(item, reads);
+        record_.read(reader_, item.tag, reads, memories_);
+    }
+
+  private:
+    PassRecord& record_;
+    const PassRecord::Reader reader_;
+    const std::vector<BankOfEntry> memories_;
+};
+
+template <class Its>
+std::unique_ptr<HeightTestUnit> recorded_height_test(const sc_core::sc_module_name& name, const UnitContext& context,
+                                                     PassRecord& record, const std::vector<BankOfEntry>& memories) {
+    return std::make_unique<Recorded<Its, HeightOperands>>(name, context, record, PassRecord::Reader::height_test,
+                                                           memories);
+}
+
+}  // namespace
+
+RecordedPass& PassRecord::pass(std::uint32_t number) {
+    if (number >= passes_.size())
+        passes_.resize(std::size_t{number} + 1);
+    return passes_[number];
+}
+
+void PassRecord::read(Reader reader, const PartTag& tag, const Reads& reads, const std::vector<BankOfEntry>& memories) {
+    RecordedPass& pass = this->pass(tag.origin.pass);
+    pass.base = tag.origin.base;
+    pass.facts.parts = static_cast<std::uint16_t>(pass.facts.parts | 1u << tag.part);
+    PartReads& part = (reader == Reader::displace_vertex ? pass.facts.displace_vertex
+                       : reader == Reader::height_test   ? pass.facts.height_test
+                                                         : pass.facts.normal_test)[tag.part];
+    part.requests = static_cast<std::uint8_t>(reads.requests());
+    if (reads.requests() == 0)
+        return;
+    part.memory = static_cast<std::uint8_t>(reads.port(0));
+    for (unsigned k = 0; k < reads.requests(); ++k)
+        part.first[k] = static_cast<std::uint8_t>(reads.first(k));
+    part.first[reads.requests()] = static_cast<std::uint8_t>(reads.entries());
+    for (unsigned k = 0; k < reads.entries(); ++k)
+        part.banks[k] = static_cast<std::uint8_t>(memories.at(part.memory)(reads.addresses()[k]));
+}
+
+void PassRecord::observe(HostedMachine& machine) {
+    culls_ = machine.pipeline.registers().back_face_culling;
+    machine.pipeline.pass_or_tessellate.decided.bind(decisions_);
+    machine.pipeline.pass_or_tessellate.finished.bind(finishes_);
+}
+
+void PassRecord::Decisions::write(const datapath::TrianglePass& decided) {
+    Facts& facts = record_.pass(decided.number).facts;
+    facts.tested = true;
+    if (decided.split == 0 && decided.new_vertices == 0)
+        return;  // it is finished
+    facts.way = Way::tessellation;
+    facts.children = 1 + static_cast<unsigned>(__builtin_popcount(decided.split));
+}
+
+void PassRecord::Finished::write(const datapath::Triangle& triangle) {
+    const auto& v = triangle.vertices;
+    const bool dropped = record_.culls_ && datapath::faces_away(v[0].screen, v[1].screen, v[2].screen);
+    record_.finished_.push_back(dropped ? Way::dropped : Way::lighting);
+}
+
+std::vector<RecordedPass> PassRecord::passes() {
+    std::size_t finished = 0;
+    for (RecordedPass& pass : passes_)
+        if (pass.facts.children == 0)
+            pass.facts.way = finished_.at(finished++);
+    if (finished != finished_.size())
+        throw InputError("recorded triangles: other passes finish than are left");
+    return std::move(passes_);
+}
+
+std::unique_ptr<DisplaceVertex> RecordedUnits::displace_vertex(Name name, const UnitContext& context) {
+    return std::make_unique<Recorded<DisplaceVertex, BasePoint>>(
+        name, context, of(context.clock), PassRecord::Reader::displace_vertex,
+        std::vector{BankOfEntry(context.timing().displacement_map, context.registers.displacement_map)});
+}
+
+std::unique_ptr<HeightTestUnit> RecordedUnits::height_test(Name name, const UnitContext& context) {
+    const HeightTestKind& kind = kind_of(context.registers.formats.height_test);
+    const std::vector<BankOfEntry> memories{
+        BankOfEntry(context.timing().*kind.table_timing, context.registers.height_table),
+        BankOfEntry(context.timing().displacement_map, context.registers.displacement_map)};
+    PassRecord& record = of(context.clock);
+    switch (context.registers.formats.height_test) {
+        case datapath::HeightTest::rank: return recorded_height_test<RankTest>(name, context, record, memories);
+        case datapath::HeightTest::curvature:
+            return recorded_height_test<CurvatureTest>(name, context, record, memories);
+        case datapath::HeightTest::mipmap: return recorded_height_test<MipmapTest>(name, context, record, memories);
+        case datapath::HeightTest::summed_height: break;
+    }
+    return recorded_height_test<SummedHeightTest>(name, context, record, memories);
+}
+
+std::unique_ptr<NormalTest> RecordedUnits::normal_test(Name name, const UnitContext& context, Parts takes) {
+    return std::make_unique<Recorded<NormalTest, NormalOperands>>(
+        name, context, of(context.clock), PassRecord::Reader::normal_test,
+        std::vector{BankOfEntry(context.timing().normal_map, context.registers.normal_map)}, takes);
+}
+
+}  // namespace tessera::schedule

@@ -1,0 +1,254 @@
+#include "testbench/prove/schedule/schedule_run.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <exception>
+#include <map>
+#include <memory>
+#include <numeric>
+#include <sstream>
+#include <vector>
+
+#include "testbench/common/child_process.h"
+#include "testbench/common/hash.h"
+#include "testbench/machine/simulation.h"
+#include "testbench/prove/schedule/machine.h"
+#include "testbench/prove/schedule/machine_plan.h"
+#include "testbench/prove/schedule/recorded_units.h"
+
+namespace tessera {
+
+namespace {
+
+constexpr std::uint64_t most_triangles = 20'000'000, most_cycles_without_progress = 1'000'000;
+
+/// Digests of the cycles in which items entered and left a unit.
+class ItemTimes : public ActivityObserver, public schedule::ItemObserver {
+  public:
+    void stretch(State, const sc_core::sc_object*, std::uint64_t, std::uint64_t) override {}
+    void item(std::uint64_t cycle, bool came) override {
+        std::uint64_t& digest = came ? came_ : left_;
+        digest = mix_hash(digest, cycle);
+    }
+    std::string text() const { return fmt::format("{:016x} {:016x}", came_, left_); }
+
+  private:
+    std::uint64_t came_ = 0, left_ = 0;
+};
+
+/// A machine's units by the schedule's numbers; null: absent, or the rasteriser.
+using Units = std::array<Unit*, schedule::units>;
+
+Units units_of(Pipeline& machine) {
+    TessellationTests& tests = machine.tessellation_tests[0];
+    Units units{};
+    units[schedule::get_triangle] = &machine.get_triangle;
+    units[schedule::calculate_new_p] = &machine.calculate_new_p;
+    units[schedule::displace_vertex] = &machine.displace_vertex;
+    units[schedule::transform] = &machine.transform;
+    units[schedule::pass_or_tessellate] = &machine.pass_or_tessellate;
+    units[schedule::tessellation] = &machine.tessellation;
+    units[schedule::triangle_queue] = &machine.triangle_queue;
+    units[schedule::lighting] = &machine.lighting;
+    units[schedule::displacement_map] = &machine.displacement_map;
+    units[schedule::displacement_map_for_tests] = machine.displacement_map_for_tests.get();
+    units[schedule::normal_map] = &machine.normal_map;
+    units[schedule::height_table] = &machine.height_table;
+    units[schedule::calculate_new_u] = &tests.calculate_new_u;
+    units[schedule::tex_coord_test] = &tests.tex_coord_test;
+    units[schedule::height_test] = &tests.height_test;
+    units[schedule::normal_test] = &tests.normal_test;
+    units[schedule::view_test] = &tests.view_test;
+    units[schedule::collect_tests] = tests.collect_tests;
+    return units;
+}
+
+/// Figures of a clocked machine, and of its schedule, in the same form.
+class ClockedText {
+  public:
+    explicit ClockedText(HostedMachine& machine) : machine_(machine), units_(units_of(machine.pipeline)) {
+        for (std::size_t k = 0; k < units_.size(); ++k)
+            if (units_[k] != nullptr)
+                units_[k]->activity().observe(&times_[k]);
+    }
+
+    std::string text() const {
+        const Pipeline& p = machine_.pipeline;
+        std::string text = fmt::format("last cycle {}\n", machine_.last_cycle());
+        for (std::size_t k = 0; k < units_.size(); ++k)
+            if (units_[k] != nullptr)
+                text += unit_text(*units_[k], times_[k]);
+        for (const TableMemory* memory :
+             {static_cast<const TableMemory*>(&p.displacement_map),
+              static_cast<const TableMemory*>(p.displacement_map_for_tests.get()),
+              static_cast<const TableMemory*>(&p.normal_map), static_cast<const TableMemory*>(&p.height_table)})
+            if (memory != nullptr)
+                text += fmt::format("{}: {} entries, {} slots, {} cycles held up, {} occupied\n", memory->name(),
+                                    memory->transactions(), memory->slots_taken(), memory->cycles_held_up(),
+                                    memory->occupied_cycles());
+        text += fmt::format("parts {}, {} taken, {} corners, {} edges, {} ahead of parts\n",
+                            p.get_triangle.parts_sent(), p.triangle_pass_or_tessellate->from_transform.taken(),
+                            p.tessellation_tests[0].view_test.from_transform->taken(),
+                            p.triangle_pass_or_tessellate->from_tessellation_tests[0].taken(),
+                            p.triangle_pass_or_tessellate->most_ahead_of_parts());
+        return text + levels_text(p.triangle_queue.high_water_mark(), p.triangle_queue.history());
+    }
+
+    static std::string levels_text(std::uint64_t most, const LevelHistory& history) {
+        std::string text = fmt::format("queue: at most {}, each {} cycles:", most, history.stretch());
+        for (const std::uint64_t level : history.highest())
+            text += fmt::format(" {}", level);
+        return text + "\n";
+    }
+
+  private:
+    static std::string unit_text(const Unit& unit, const ItemTimes& times) {
+        const Activity& activity = unit.activity();
+        std::string text =
+            fmt::format("{}: items {} in cycles {}, at most {}, item cycles {}", unit.name(), activity.items_in(),
+                        times.text(), activity.high_water_mark(), activity.item_cycles());
+        for (std::size_t state = 0; state < states; ++state)
+            text += fmt::format(", {}", activity.cycles_in(static_cast<State>(state)));
+        for (const Activity::Share& share : activity.shares())
+            if (share.by != nullptr)
+                text += fmt::format(", {} {} {}", static_cast<int>(share.state), share.by->name(), share.cycles);
+        return text + "\n";
+    }
+
+    HostedMachine& machine_;
+    const Units units_;
+    std::array<ItemTimes, schedule::units> times_;
+};
+
+class ScheduledText {
+  public:
+    ScheduledText(HostedMachine& machine, const Design& design)
+        : machine_(machine),
+          units_(units_of(machine.pipeline)),
+          schedule_(schedule::plan_of(machine.pipeline, machine.rasteriser, design)) {
+        for (std::size_t k = 0; k < units_.size(); ++k)
+            if (units_[k] != nullptr)
+                schedule_.observe(static_cast<schedule::Unit>(k), &times_[k]);
+    }
+
+    /// Returns the first pass that the schedule begins in another order; empty: none.
+    std::string run(const std::vector<schedule::RecordedPass>& passes) {
+        std::vector<std::uint32_t> kept;  // the base triangle of each child, by place
+        schedule_.send(machine_.host.total(), 0);
+        for (std::size_t number = 0;; ++number) {
+            const schedule::Source::Next& next = schedule_.next();
+            if (!next.any)
+                return number == passes.size() ? "" : fmt::format("{} of {} passes scheduled", number, passes.size());
+            if (number == passes.size())
+                return fmt::format("pass {} is scheduled, and was not begun", number);
+            const schedule::RecordedPass& pass = passes[number];
+            if (next.from_host != pass.is_base() || (!next.from_host && kept.at(next.place) != pass.base))
+                return fmt::format("pass {}, of base triangle {}: the schedule begins another", number, pass.base);
+            schedule::Facts facts = pass.facts;
+            for (unsigned child = 0; child < facts.children; ++child) {
+                facts.place[child] = static_cast<std::uint32_t>(kept.size());
+                kept.push_back(pass.base);
+            }
+            schedule_.pass(facts);
+        }
+    }
+
+    std::string text(std::uint64_t cycles) {
+        schedule_.finish(cycles);
+        std::string text = fmt::format("last cycle {}\n", schedule_.last());
+        for (std::size_t k = 0; k < units_.size(); ++k)
+            if (units_[k] != nullptr)
+                text += unit_text(static_cast<schedule::Unit>(k));
+        for (const schedule::Unit memory : {schedule::displacement_map, schedule::displacement_map_for_tests,
+                                            schedule::normal_map, schedule::height_table}) {
+            if (units_[memory] == nullptr)
+                continue;
+            const schedule::Ports& ports = schedule_.ports(memory);
+            const auto& slots = ports.bank_slots();
+            text += fmt::format(
+                "{}: {} entries, {} slots, {} cycles held up, {} occupied\n", units_[memory]->name(), ports.entries(),
+                std::accumulate(slots.begin(), slots.end(), std::uint64_t{0}), ports.held_up(),
+                std::max(*std::max_element(slots.begin(), slots.end()) / ports.ports_of_a_bank(), ports.held_up()));
+        }
+        text += fmt::format("parts {}, {} taken, {} corners, {} edges, {} ahead of parts\n", schedule_.parts_sent(),
+                            schedule_.parts_sent(), schedule_.corners(), schedule_.edges(),
+                            schedule_.most_ahead_of_parts());
+        return text + ClockedText::levels_text(schedule_.source().highest(), schedule_.source().history());
+    }
+
+  private:
+    std::string unit_text(schedule::Unit unit) const {
+        const schedule::Figures its = schedule_.figures(unit);
+        std::string text = fmt::format("{}: items {} in cycles {}, at most {}, item cycles {}", units_[unit]->name(),
+                                       its.items, times_[unit].text(), its.most, its.item_cycles);
+        for (std::size_t state = 0; state < states; ++state)
+            text += fmt::format(", {}", its.states->cycles_in(static_cast<State>(state)));
+        for (const schedule::States::Share& share : its.states->shares()) {
+            if (share.by == schedule::nobody)
+                continue;
+            const char* const by =
+                share.by == schedule::rasteriser ? machine_.rasteriser.name() : units_[share.by]->name();
+            text += fmt::format(", {} {} {}", static_cast<int>(share.state), by, share.cycles);
+        }
+        return text + "\n";
+    }
+
+    HostedMachine& machine_;
+    const Units units_;
+    schedule::Machine schedule_;
+    std::array<ItemTimes, schedule::units> times_;
+};
+
+std::string difference(const Job& job, const BaseMesh& mesh, const HeightMap& map) {
+    const MachineSetup setup = make_setup(job, mesh, map);
+    schedule::RecordedUnits units;
+    Simulation simulation(setup, most_triangles, most_cycles_without_progress, &units);
+    std::vector<std::unique_ptr<ClockedText>> clocked;
+    for (const auto& machine : simulation.machines) {
+        units.of(machine->pipeline.clock).observe(*machine);
+        clocked.push_back(std::make_unique<ClockedText>(*machine));
+    }
+    if (std::string stuck = simulation.run(); !stuck.empty())
+        return stuck;
+    for (std::size_t k = 0; k < simulation.machines.size(); ++k) {
+        HostedMachine& machine = *simulation.machines[k];
+        ScheduledText scheduled(machine, setup.design);
+        if (std::string other = scheduled.run(units.of(machine.pipeline.clock).passes()); !other.empty())
+            return other;
+        if (std::string other = first_difference(clocked[k]->text(), scheduled.text(simulation.cycles()));
+            !other.empty())
+            return other;
+    }
+    return {};
+}
+
+}  // namespace
+
+std::string schedule_difference(const Job& job, const BaseMesh& mesh, const HeightMap& map) {
+    const ChildEnd end = run_in_child([&]() -> std::string {
+        try {
+            return difference(job, mesh, map);
+        } catch (const std::exception& error) {
+            return error.what();
+        }
+    });
+    return end.told + end.failure;
+}
+
+std::string first_difference(const std::string& clocked, const std::string& scheduled) {
+    std::istringstream left(clocked), right(scheduled);
+    std::string a, b;
+    while (true) {
+        const bool more_left = static_cast<bool>(std::getline(left, a)),
+                   more_right = static_cast<bool>(std::getline(right, b));
+        if (!more_left && !more_right)
+            return {};
+        if (more_left != more_right || a != b)
+            return fmt::format("clocked:  {}\nschedule: {}", more_left ? a : "", more_right ? b : "");
+    }
+}
+
+}  // namespace tessera
