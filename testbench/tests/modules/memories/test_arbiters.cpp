@@ -92,9 +92,6 @@ TEST_CASE("banked ports: the occupied cycles are the busiest bank's slots by its
         exclusive.serve({0, 1, 16, 17}, 10 * k);  // columns 0 and 1 of rows 0 and 1: two in each bank
     CHECK(exclusive.ports.slots_taken() == 24);
     CHECK(exclusive.ports.occupied_cycles() == 12 / 3);
-    exclusive.ports.assign_slots({7, 30});
-    CHECK(exclusive.ports.slots_taken() == 37);
-    CHECK(exclusive.ports.occupied_cycles() == 30 / 3);
 }
 
 TEST_CASE("banked ports: a window lets requests start while others wait for a bank") {
