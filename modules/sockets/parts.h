@@ -118,12 +118,4 @@ constexpr Parts parts_in(const Item& item) {
         return all_parts;
 }
 
-template <class Item>
-constexpr const Origin& origin_of(const Item& item) {
-    if constexpr (is_part<Item>)
-        return item.tag.origin;
-    else
-        return item.origin;
-}
-
 }  // namespace tessera

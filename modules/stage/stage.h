@@ -27,7 +27,6 @@ class Stage : public Unit {
     std::string describe_contents() const override;
     std::uint64_t occupied_cycles() const override;
     void trace_signals(Signals& signals) const override;
-    Begun begun() const override;
 
   protected:
     /// servers: parallel pipelines, used round-robin. memory_latency: of the table that the unit reads.

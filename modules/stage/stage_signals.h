@@ -67,10 +67,4 @@ void Stage<In, Out>::trace_signals(Signals& signals) const {
         show_result(m.waiting > 0 ? m.pipeline.at(m.waiting - 1) : m.pipeline.newest());
 }
 
-template <class In, class Out>
-Begun Stage<In, Out>::begun() const {
-    const In& item = machinery_->pipeline.newest().item;
-    return {activity_.items_in(), origin_of(item), parts_in(item)};
-}
-
 }  // namespace tessera

@@ -13,13 +13,6 @@ namespace tessera {
 
 class Signals;
 
-/// The item that a unit began last, for the timeline.
-struct Begun {
-    std::uint64_t count = 0;  ///< items begun; 0: the unit names none
-    Origin triangle;
-    Parts parts = all_parts;  ///< a single part; all_parts: the whole triangle
-};
-
 /// A box of the paper's figures 7 and 8, or a memory: a clocked module that records its state in each cycle.
 class Unit : public CycleProcess, public sc_core::sc_module {
   public:
@@ -37,10 +30,6 @@ class Unit : public CycleProcess, public sc_core::sc_module {
     /// Declares the unit's signals, or shows their values at the end of a cycle (modules/stage/signals.h). For every
     /// unit: its state, the unit that blocks it or that it waits for, and the items in it.
     virtual void trace_signals(Signals& signals) const;
-
-    /// Valid in a cycle in which the unit begins an item, and while it holds any. Memories and the Triangle Queue,
-    /// which hold many triangles at once, name none.
-    virtual Begun begun() const { return {}; }
 
   protected:
     Unit(const sc_core::sc_module_name& name, CycleScheduler& clock) : sc_module(name), clock_(clock) {}

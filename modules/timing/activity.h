@@ -55,9 +55,6 @@ class Activity {
         end_of_cycle_before(cycle);
     }
 
-    /// Ends the present stretch at `cycle` and begins another in the same state.
-    void split(std::uint64_t cycle) { close(cycle); }
-
     State state() const { return state_; }
     const sc_core::sc_object* by() const { return by_; }
     std::uint64_t cycles_in(State state) const { return cycles_[static_cast<std::size_t>(state)]; }

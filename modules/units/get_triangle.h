@@ -50,7 +50,6 @@ class GetTriangle : public Unit {
         return one_at_a_time_cycles(timing_, activity_.items_in(), parts_sent_);
     }
     void trace_signals(Signals& signals) const override;
-    Begun begun() const override { return {activity_.items_in(), taken_.origin}; }
 
   private:
     /// One output: its parts of the triangle that are still to be sent, and the part on offer.

@@ -49,7 +49,6 @@ class PassOrTessellate : public DecidingUnit {
     std::uint64_t occupied_cycles() const override { return activity_.items_out() * timing_.interval; }
     void trace_signals(Signals& signals) const override;
     /// The triangle decided last.
-    Begun begun() const override { return {counts_.passes + counts_.normal_passes, last_.origin}; }
 
   private:
     /// A decided triangle on its way out, for the unit it goes to.

@@ -45,7 +45,6 @@ void Tessellation::step() {
         tessellate(decided.pass, registers_.triangulation, registers_.formats, saturations_,
                    [&](const datapath::Triangle& child) { children_[made_++] = child; });
         ++made_into_[made_];
-        origin_ = decided.origin;
         activity_.item_in(cycle);
         next_ = std::max(next_, cycle + timing_.latency);
         from_pass_or_tessellate.pop();

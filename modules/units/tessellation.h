@@ -57,7 +57,6 @@ class Tessellation : public TessellatingUnit {
         return one_at_a_time_cycles(timing_, activity_.items_in(), children());
     }
     void trace_signals(Signals& signals) const override;
-    Begun begun() const override { return {activity_.items_in(), origin_}; }
 
   private:
     void b_transport(DecidedTriangle& decided, sc_core::sc_time& delay);
@@ -65,8 +64,7 @@ class Tessellation : public TessellatingUnit {
 
     sc_core::sc_time latency_;
     std::array<datapath::Triangle, 4> children_;
-    Origin origin_;      // of the triangle that is being worked on
-    unsigned made_ = 0;  // its children
+    unsigned made_ = 0;  // children of the triangle that is being worked on
     unsigned sent_ = 0;  // of these, sent
     std::uint64_t next_ = 0;
 };

@@ -34,9 +34,6 @@ class TraceOptions {
         run.add_flag("--vcd", vcd_, "write waveforms, trace.vcd; same as --set output.vcd=true")->group(group);
         run.add_flag("--fst", fst_, "also compress the waveforms, trace.fst (needs vcd2fst from the package gtkwave)")
             ->group(group);
-        run.add_flag("--timeline", timeline_,
-                     "write activity per unit, timeline.json; same as --set output.timeline=true")
-            ->group(group);
         run.add_option("--trace", window_,
                        "cycles to trace, FROM:TO; same as --set output.trace_from=FROM --set output.trace_to=TO")
             ->group(group);
@@ -53,8 +50,6 @@ class TraceOptions {
         };
         if (vcd_ || fst_)
             set("vcd", "true");
-        if (timeline_)
-            set("timeline", "true");
         if (!window_.empty() || !units_.empty())
             command.trace_option = window_.empty() ? "--trace-units" : "--trace";
         if (!window_.empty()) {
@@ -70,7 +65,7 @@ class TraceOptions {
     }
 
   private:
-    bool vcd_ = false, fst_ = false, timeline_ = false;
+    bool vcd_ = false, fst_ = false;
     std::string window_, units_;
 };
 

@@ -15,7 +15,7 @@ struct Command {
     std::filesystem::path data_folder;  ///< folder that `data:` paths refer to
     bool dump_config = false;           ///< print the effective job and stop
     bool fst = false;                   ///< waveforms also as FST
-    std::string trace_option;           ///< --trace or --trace-units, if given; requires --vcd, --fst or --timeline
+    std::string trace_option;           ///< --trace or --trace-units, if given; requires --vcd or --fst
 };
 
 /// Returns the command to call; empty for help or version, which are then already printed. Throws InputError on wrong

@@ -125,13 +125,11 @@ void write_reports(const std::filesystem::path& folder, const Job& job, const Ma
     }
 }
 
-/// Names and windows of the traces; writes trace.fst if requested.
+/// Name and window of the waveforms; writes trace.fst if requested.
 std::string finish_traces(Traces& traces, const Command& command, const std::filesystem::path& folder,
                           AtomicSet& files) {
     traces.finish();
-    std::string text;
-    for (const std::string& line : traces.text())
-        text += fmt::format("  {}\n", line);
+    std::string text = fmt::format("  {}\n", traces.text());
     if (command.fst) {
         const std::string fault = make_fst(folder, files);
         text += fmt::format("  {}\n", fault.empty() ? "trace.fst: the same, compressed" : fault);
@@ -205,7 +203,7 @@ Ending run_once(const Job& asked, const Command& command, const std::string& nam
 
     AtomicSet files;
     std::optional<Traces> traces;
-    if (Traces::wanted(job)) {
+    if (job.output.vcd) {
         const std::vector<const Unit*> units = units_to_trace(job.output.trace_units, simulation.pipeline);
         files.make_folder(folder, "output.folder");
         traces.emplace(job, folder, simulation, units);
@@ -307,9 +305,8 @@ ExitCode run_job(const Command& command) {
         fmt::print("{}", dump_job(job));
         return ExitCode::fine;
     }
-    if (!command.trace_option.empty() && !Traces::wanted(job))
-        throw InputError(fmt::format("{} selects what to trace, but tracing is off: add --vcd, --timeline or both",
-                                     command.trace_option));
+    if (!command.trace_option.empty() && !job.output.vcd)
+        throw InputError(fmt::format("{} selects what to trace, but tracing is off: add --vcd", command.trace_option));
     require_run_folder(job);
     require_inputs_stay(job);
     record_fingerprints(job);

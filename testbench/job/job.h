@@ -119,7 +119,6 @@ struct Job {
         bool obj = false;
         bool picture = true;
         bool vcd = false;               // timed mode: waveforms
-        bool timeline = false;          // timed mode: activity per unit in the Chrome trace format
         std::int64_t trace_from = 0;    // first cycle of both
         std::int64_t trace_to = 10000;  // last cycle of both
         std::string trace_units;        // only units whose name contains one of these words

@@ -267,9 +267,8 @@ std::vector<KeyTable> declare_keys() {
         key.add("obj", &Output::obj, "Also write the mesh as OBJ: text, about five times as large as mesh.ply");
         key.add("picture", &Output::picture, "Write picture.png");
         key.add("vcd", &Output::vcd, "Timed mode: write waveforms, trace.vcd; of several machines, the first");
-        key.add("timeline", &Output::timeline, "Timed mode: write each unit's activity in the Chrome trace format, timeline.json; of several machines, the first");
-        key.add("trace_from", &Output::trace_from, "cycles", between(0, most_trace), "First cycle of waveforms and timeline");
-        key.add("trace_to", &Output::trace_to, "cycles", between(0, most_trace), "Last cycle of waveforms and timeline");
+        key.add("trace_from", &Output::trace_from, "cycles", between(0, most_trace), "First cycle of waveforms");
+        key.add("trace_to", &Output::trace_to, "cycles", between(0, most_trace), "Last cycle of waveforms");
         key.add("trace_units", &Output::trace_units, KeyKind::text, "Waveforms only of units whose name contains one of these words; empty: all");
     });
     // clang-format on

@@ -146,10 +146,8 @@ void check_design(const Job& job, Faults& faults) {
 
 void check_traces(const Job& job, Faults& faults) {
     const Job::Output& output = job.output;
-    const char* const wanted = output.vcd ? "vcd" : output.timeline ? "timeline" : nullptr;
-    faults.unless(wanted == nullptr || job.mode == Mode::timed,
-                  "`output.{}` = true, but only timed mode has cycles to trace: set mode = \"timed\"",
-                  wanted == nullptr ? "" : wanted);
+    faults.unless(!output.vcd || job.mode == Mode::timed,
+                  "`output.vcd` = true, but only timed mode has cycles to trace: set mode = \"timed\"");
     faults.unless(
         output.trace_from <= output.trace_to,
         "`output.trace_from` = {} comes after `output.trace_to` = {}: set output.trace_from = {}, or output.trace_to = {}",

@@ -29,7 +29,6 @@ class CollectTests : public Unit {
     std::string describe_contents() const override;
     std::uint64_t occupied_cycles() const override { return activity_.items_in(); }
     void trace_signals(Signals& signals) const override;
-    Begun begun() const override { return {activity_.items_in(), leaving_.tag.origin, leaving_.tag.bit()}; }
 
   private:
     /// Functional mode: the results so far for the edge under way, and the time of the last one.

@@ -36,9 +36,6 @@ class SequenceTests : public SequencingUnit {
     std::string describe_contents() const override;
     std::uint64_t occupied_cycles() const override { return activity_.items_in(); }
     void trace_signals(Signals& signals) const override;
-    Begun begun() const override {
-        return {activity_.items_in(), newest().tested.tag.origin, newest().tested.tag.bit()};
-    }
 
   private:
     StreamOutput<NormalOperands>& normal_test() override { return to_normal_test; }
@@ -53,7 +50,6 @@ class SequenceTests : public SequencingUnit {
     bool leave(std::uint64_t cycle);
     Edge* first(Next next);
     Edge* in_test(const PartTag& tag, Next expected);
-    const Edge& newest() const { return edges_.back(); }
 
     Ring<Edge> edges_;
     NormalOperands vertex_;  // on offer to the Normal Test

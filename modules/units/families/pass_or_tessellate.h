@@ -44,7 +44,6 @@ class FamilyPassOrTessellate : public DecidingUnit {
         return std::max({families_decided_, lit_children_, queued_children_}) * timing_.interval;
     }
     void trace_signals(Signals& signals) const override;
-    Begun begun() const override { return {families_decided_, last_.origin}; }
 
   private:
     struct Child {

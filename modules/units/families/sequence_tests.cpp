@@ -77,7 +77,6 @@ bool FamilySequenceTests::take_edge(std::size_t lane, std::uint64_t cycle) {
     from_view_test[lane].pop();
     decided(edge, after_cheap_tests(edge));
     activity_.item_in(cycle);
-    newest_ = edge.tested.tag;
     ++taken_;
     lanes_[lane].next_in = cycle + 1;
     return true;

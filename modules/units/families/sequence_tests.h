@@ -41,7 +41,6 @@ class FamilySequenceTests : public SequencingUnit {
     std::string describe_contents() const override;
     std::uint64_t occupied_cycles() const override { return activity_.items_in() / lanes_.size(); }
     void trace_signals(Signals& signals) const override;
-    Begun begun() const override { return {activity_.items_in(), newest_.origin, newest_.bit()}; }
 
   private:
     struct Lane {
@@ -73,7 +72,6 @@ class FamilySequenceTests : public SequencingUnit {
     HeightOperands height_offered_;
     Ring<TestedEdge> leaving_;
     std::size_t normal_turn_ = 0;
-    PartTag newest_;
     std::size_t last_lane_ = 0;  // from which an edge left
 };
 

@@ -46,7 +46,6 @@ class FamilyTessellation : public TessellatingUnit {
         return one_at_a_time_cycles(timing_, activity_.items_in(), most_parts_);
     }
     void trace_signals(Signals& signals) const override;
-    Begun begun() const override { return {activity_.items_in(), sent_.family.origin}; }
 
   private:
     /// A triangle whose parts are arriving; in functional mode, the time at which the last one arrived.

@@ -10,7 +10,6 @@
 #include <cerrno>
 #include <csignal>
 #include <exception>
-#include <optional>
 #include <ostream>
 #include <streambuf>
 #include <string_view>
@@ -104,29 +103,14 @@ std::vector<const Unit*> units_to_trace(const std::string& words, const Pipeline
 }
 
 struct Traces::Files {
-    Files(const Job& job, const fs::path& folder, Simulation& simulation, const std::vector<const Unit*>& units) {
-        const std::uint64_t period = simulation.setup.design.timing.cycle_picoseconds;
-        if (job.output.vcd) {
-            vcd_file.emplace(folder / "trace.vcd");
-            vcd.emplace(*vcd_file, period, window_of(job));
-        }
-        if (job.output.timeline) {
-            // A cycle is shown as a microsecond, the format's unit: viewers add times in floating point, and only whole
-            // numbers stay exact. Otherwise intervals overlap by a rounding error, and are shown as nested or not at
-            // all.
-            constexpr std::uint64_t shown_cycle = 1'000'000;
-            timeline_file.emplace(folder / "timeline.json");
-            timeline.emplace(*timeline_file, shown_cycle, window_of(job));
-        }
-        recorder.emplace(simulation.pipeline, vcd ? &*vcd : nullptr, timeline ? &*timeline : nullptr, window_of(job),
-                         units);
-    }
+    Files(const Job& job, const fs::path& folder, Simulation& simulation, const std::vector<const Unit*>& units)
+        : file(folder / "trace.vcd"),
+          vcd(file, simulation.setup.design.timing.cycle_picoseconds, window_of(job)),
+          recorder(simulation.pipeline, vcd, window_of(job), units) {}
 
-    std::optional<AtomicStream> vcd_file;
-    std::optional<AtomicStream> timeline_file;
-    std::optional<VcdWriter> vcd;
-    std::optional<TimelineWriter> timeline;
-    std::optional<Recorder> recorder;
+    AtomicStream file;
+    VcdWriter vcd;
+    Recorder recorder;
 };
 
 Traces::Traces(const Job& job, const fs::path& folder, Simulation& simulation, const std::vector<const Unit*>& units)
@@ -137,34 +121,22 @@ Traces::Traces(const Job& job, const fs::path& folder, Simulation& simulation, c
 Traces::~Traces() = default;
 
 void Traces::check() const {
-    if (files_->vcd_file)
-        files_->vcd_file->check();
-    if (files_->timeline_file)
-        files_->timeline_file->check();
+    files_->file.check();
 }
 
 void Traces::finish() {
     check();
-    files_->recorder->finish(simulation_.cycles());
-    check();
-    if (files_->vcd_file)
-        files_->vcd_file->commit();
-    if (files_->timeline_file)
-        files_->timeline_file->commit();
+    files_->recorder.finish(simulation_.cycles());
+    files_->file.commit();
 }
 
-std::vector<std::string> Traces::text() const {
+std::string Traces::text() const {
     const std::uint64_t cycles = simulation_.cycles();
     const std::string window =
         window_.first >= cycles
             ? fmt::format("the run ended after {} cycles, before cycle {}: only its end", cycles, window_.first)
             : fmt::format("cycles {} to {}", window_.first, std::min(window_.last, cycles - 1));
-    std::vector<std::string> text;
-    if (files_->vcd)
-        text.push_back(fmt::format("trace.vcd: {}, {} value changes", window, files_->vcd->changes()));
-    if (files_->timeline)
-        text.push_back(fmt::format("timeline.json: {}", window));
-    return text;
+    return fmt::format("trace.vcd: {}, {} value changes", window, files_->vcd.changes());
 }
 
 std::string make_fst(const fs::path& folder, AtomicSet& files) {

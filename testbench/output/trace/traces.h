@@ -16,12 +16,10 @@ namespace tessera {
 /// empty. Throws InputError on a word that no name contains.
 std::vector<const Unit*> units_to_trace(const std::string& words, const Pipeline& pipeline);
 
-/// The traces requested by a job, trace.vcd and timeline.json, written into the run's folder during the simulation;
-/// they get their names only when complete (AtomicFile, AtomicSet). Without finish() nothing remains.
+/// The waveforms requested by a job, trace.vcd, written into the run's folder during the simulation; the file gets its
+/// name only when complete (AtomicFile, AtomicSet). Without finish() nothing remains.
 class Traces {
   public:
-    static bool wanted(const Job& job) { return job.output.vcd || job.output.timeline; }
-
     /// Construct before the simulation runs. The folder must exist.
     Traces(const Job& job, const std::filesystem::path& folder, Simulation& simulation,
            const std::vector<const Unit*>& units);
@@ -33,8 +31,8 @@ class Traces {
     /// Call after the simulation has ended, for whatever reason. Throws like check().
     void finish();
 
-    /// For the summary: the files written and their cycles, one line each.
-    std::vector<std::string> text() const;
+    /// For the summary: the file and its cycles.
+    std::string text() const;
 
   private:
     struct Files;

@@ -206,7 +206,7 @@ TEST_CASE("timed run: a window or units to trace without a trace are refused") {
     const TestFolder here;
     for (const std::vector<std::string>& option :
          std::vector<std::vector<std::string>>{{"--trace", "5:50"}, {"--trace-units", "queue"}})
-        refused(timed_run("out", {}) + option, here.path(), {option[0], "--vcd", "--timeline"});
+        refused(timed_run("out", {}) + option, here.path(), {option[0], "--vcd"});
 }
 
 TEST_CASE("timed run: a queue that may not overflow ends with exit code 4 and names the key") {

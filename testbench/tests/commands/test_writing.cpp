@@ -30,7 +30,7 @@ bool is_unfinished(const std::string& name) {
 
 /// A run small enough to repeat some hundred times, with every file except the picture, which takes long.
 Arguments run_arguments(const std::string& seed) {
-    return Arguments{"run", "--vcd", "--timeline"} +
+    return Arguments{"run", "--vcd"} +
            set({"map.width=16", "map.height=16", "map.source=noise", "tests.generation_limit=3", "output.picture=false",
                 "output.trace_to=3000", "output.folder=out/run", "map.seed=" + seed});
 }

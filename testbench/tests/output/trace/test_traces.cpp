@@ -34,72 +34,24 @@ std::uint64_t count(const nlohmann::json& statistics, const std::string& group, 
     return statistics.at(group).at(name).at("value").get<std::uint64_t>();
 }
 
-/// A timeline read back: the activity of each unit, and the flows by triangle, in time order.
-struct Timeline {
-    struct Slice {
-        std::string track, state;
-        double begin, end;
-        nlohmann::json arguments;
-    };
-    struct Step {
-        std::string phase, track;
-        double time;
-    };
-
-    explicit Timeline(const fs::path& file) {
-        const nlohmann::json all = nlohmann::json::parse(read_all(file));
-        for (const nlohmann::json& event : all.at("traceEvents")) {
-            const std::string phase = event.at("ph");
-            if (event.at("name") == "thread_name")
-                tracks[event.at("tid")] = event.at("args").at("name");
-            if (phase == "X") {
-                const double begin = event.at("ts");
-                slices.push_back({tracks.at(event.at("tid")), event.at("name"), begin,
-                                  begin + event.at("dur").get<double>(),
-                                  event.value("args", nlohmann::json::object())});
-            } else if (phase == "s" || phase == "t" || phase == "f") {
-                CHECK(event.at("name") == "triangle");
-                CHECK(event.at("cat") == "triangle");
-                CHECK((event.value("bp", "") == "e") == (phase == "f"));
-                flows[event.at("id")].push_back({phase, tracks.at(event.at("tid")), event.at("ts")});
-            }
-        }
-        for (auto& [triangle, steps] : flows)
-            std::stable_sort(steps.begin(), steps.end(), [](const Step& a, const Step& b) { return a.time < b.time; });
-        for (const Slice& slice : slices)
-            by_begin[slice.track].emplace(slice.begin, &slice);
-    }
-    const Slice* slice_at(const std::string& track, double time) const {
-        const auto& its = by_begin.at(track);
-        const auto after = its.upper_bound(time);
-        return after == its.begin() || std::prev(after)->second->end <= time ? nullptr : std::prev(after)->second;
-    }
-
-    std::map<int, std::string> tracks;
-    std::vector<Slice> slices;
-    std::map<std::uint64_t, std::vector<Step>> flows;
-    std::map<std::string, std::map<double, const Slice*>> by_begin;
-};
-
 }  // namespace
 
 TEST_CASE("tracing changes only its own files, and these are the same every time") {
     const TestFolder here;
     run_small(here, {});
     const std::map<std::string, std::string> plain = RunFolder(here.path() / "out").files();
-    run_small(here, {"--vcd", "--timeline"});
+    run_small(here, {"--vcd"});
     const std::map<std::string, std::string> traced = RunFolder(here.path() / "out").files();
-    run_small(here, {"--vcd", "--timeline"});
+    run_small(here, {"--vcd"});
     require_same_files(traced, RunFolder(here.path() / "out").files());
-    CHECK(traced.size() == plain.size() + 2);
+    CHECK(traced.size() == plain.size() + 1);
     for (const auto& [name, content] : plain) {
         INFO(name);
         if (name != "job.toml")  // which says that traces were asked for
             CHECK((content == traced.at(name)));
     }
-    run_small(here, {"--timeline"});
-    CHECK_FALSE(fs::exists(here.path() / "out/trace.vcd"));
     run_small(here, {});
+    CHECK_FALSE(fs::exists(here.path() / "out/trace.vcd"));
     require_same_files(plain, RunFolder(here.path() / "out").files());
 }
 
@@ -149,7 +101,7 @@ TEST_CASE("a window shows its cycles with their values in the whole run") {
 
 TEST_CASE("a window after the end of the run shows how the run ends") {
     const TestFolder here;
-    const ProgramEnd end = run_small(here, {"--vcd", "--timeline", "--trace", "1000000:1000010"});
+    const ProgramEnd end = run_small(here, {"--vcd", "--trace", "1000000:1000010"});
     CHECK_THAT(end.out, Contains("before cycle 1000000"));
     const VcdFile vcd(here.path() / "out/trace.vcd");
     CHECK(vcd.begin == vcd.end);
@@ -335,159 +287,22 @@ TEST_CASE("only the named units are traced") {
     }
 }
 
-TEST_CASE("the timeline's stretches tile the window and agree with the statistics") {
-    const TestFolder here;
-    const auto [first, last] = GENERATE(std::pair<std::uint64_t, std::uint64_t>{0, 1000000},
-                                        std::pair<std::uint64_t, std::uint64_t>{500, 2000});
-    const std::string design = GENERATE("paper", "modern");
-    run_small(here, {"--timeline", "--trace", std::to_string(first) + ":" + std::to_string(last), "--set",
-                     "hardware.design=" + design});
-    const nlohmann::json timeline = nlohmann::json::parse(read_all(here.path() / "out/timeline.json"));
-    const nlohmann::json statistics = statistics_of(here);
-    const std::uint64_t cycles = count(statistics, "timing", "cycles");
-    std::map<int, std::string> tracks;
-    std::map<int, std::uint64_t> reached;
-    std::map<std::pair<std::string, std::string>, std::uint64_t> spent;
-    std::uint64_t counters = 0;
-    // One cycle is a microsecond: whole numbers, which viewers add without rounding.
-    const auto in_cycles = [](const nlohmann::json& microseconds) {
-        REQUIRE(microseconds.is_number_unsigned());
-        return microseconds.get<std::uint64_t>();
-    };
-    for (const nlohmann::json& event : timeline.at("traceEvents")) {
-        const std::string phase = event.at("ph");
-        if (phase == "M" && event.at("name") == "thread_name")
-            tracks[event.at("tid")] = event.at("args").at("name");
-        counters += phase == "C";
-        if (phase != "X")
-            continue;
-        const int track = event.at("tid");
-        const std::uint64_t begin = in_cycles(event.at("ts"));
-        CHECK(begin == (reached.count(track) == 0 ? first : reached[track]));
-        reached[track] = begin + in_cycles(event.at("dur"));
-        spent[{tracks.at(track), event.at("name")}] += in_cycles(event.at("dur"));
-        if (event.at("name") == "blocked")
-            CHECK(event.contains("args"));
-    }
-    CHECK(tracks.size() == (design == "paper" ? 18 : 24));
-    CHECK(counters > 10);
-    std::size_t with_states = 0;
-    for (const auto& [number, name] : tracks) {
-        INFO(name);
-        CHECK(reached[number] == std::min(last + 1, cycles));
-        if (first > 0 || !statistics.at("timing." + name).contains("busy"))
-            continue;
-        ++with_states;
-        for (const auto& [state, figure] :
-             std::map<std::string, std::string>{{"busy", "busy"},
-                                                {"starved", "starved"},
-                                                {"waiting for memory", "waiting_for_memory"},
-                                                {"blocked", "blocked"}})
-            CHECK((spent[{name, state}]) == count(statistics, "timing." + name, figure));
-    }
-    CHECK(with_states == (first > 0 ? 0 : tracks.size() - 2));  // all except queue and results, which have no states
-}
-
-TEST_CASE("a triangle can be followed through the timeline") {
-    const TestFolder here;
-    const auto design =
-        GENERATE(std::vector<std::string>{},
-                 std::vector<std::string>{"--set", "timing.stalls_per_mille=200", "--set", "hardware.tests_units=3"},
-                 std::vector<std::string>{"--set", "hardware.culling=back", "--set", "displacement.scale=0.6"});
-    const bool whole = GENERATE(true, false);
-    run_small(here, Arguments{"--timeline", "--trace", whole ? "0:1000000" : "500:2000"} + design);
-    const Timeline timeline(here.path() / "out/timeline.json");
-    const nlohmann::json statistics = statistics_of(here);
-
-    // Counted, since an assertion for each of so many slices and steps would take minutes.
-    std::map<std::string, std::size_t> broken;
-    const auto require_each = [&](bool holds, const char* rule) {
-        if (!holds)
-            ++broken[rule];
-    };
-
-    // Each slice names triangles of one base only, and units that take parts name each part once.
-    std::map<std::uint64_t, std::uint64_t> base_of;
-    std::map<std::string, std::set<std::pair<std::uint64_t, std::string>>> items;
-    for (const Timeline::Slice& slice : timeline.slices) {
-        if (!slice.arguments.contains("triangle"))
-            continue;
-        // These two hold a triangle whenever they are not starved.
-        if (slice.track == "get_triangle" || slice.track == "tessellation")
-            require_each(slice.state != "starved", "holds a triangle and is not starved");
-        const std::uint64_t triangle = slice.arguments.at("triangle");
-        const std::uint64_t base = slice.arguments.at("base");
-        require_each(base_of.emplace(triangle, base).first->second == base, "a triangle has one base");
-        items[slice.track].emplace(triangle, slice.arguments.value("part", ""));
-    }
-    CHECK(std::max_element(base_of.begin(), base_of.end(), [](const auto& a, const auto& b) {
-              return a.second < b.second;
-          })->second > 0);
-    const std::set<std::string> without{"triangle_queue", "displacement_map", "normal_map", "summed_height_table",
-                                        "off_chip_memory"};
-    const std::set<std::string> take_all{"get_triangle", "pass_or_tessellate", "tessellation", "lighting"};
-    for (const auto& [number, unit] : timeline.tracks) {
-        INFO(unit);
-        CHECK((items.count(unit) == 0) == (without.count(unit) == 1));
-        const std::string last = unit.substr(unit.rfind('.') + 1);
-        if (whole && last != "collect_tests" && without.count(unit) == 0)  // it may let several by in a cycle
-            CHECK(items[unit].size() == count(statistics, "timing." + unit, "items"));
-        for (const auto& [triangle, part] : items[unit])
-            require_each(part.empty() == (take_all.count(unit) == 1), "a part is named where parts are taken");
-    }
-
-    // Steps lie within their triangle's slices. A flow begins once, in Get Triangle, and ends once, in its last unit.
-    std::map<std::string, std::uint64_t> ends;
-    std::size_t unfinished = 0;
-    for (const auto& [triangle, steps] : timeline.flows) {
-        std::set<std::string> units;
-        for (std::size_t k = 0; k < steps.size(); ++k) {
-            const Timeline::Step& step = steps[k];
-            require_each(units.insert(step.track).second, "a flow is in a unit once");
-            const Timeline::Slice* const slice = timeline.slice_at(step.track, step.time);
-            require_each(slice != nullptr && slice->arguments.value("triangle", UINT64_MAX) == triangle,
-                         "a step stands in a slice of its triangle");
-            require_each((step.phase == "s") == (k == 0), "a flow begins once");
-            require_each((step.phase == "s") == (step.track == "get_triangle"), "a flow begins in Get Triangle");
-            require_each(step.phase != "f" || k + 1 == steps.size(), "a flow ends once");
-            require_each(k == 0 || steps[k - 1].time <= step.time, "a flow goes forward");
-        }
-        if (steps.back().phase != "f") {
-            ++unfinished;
-            continue;
-        }
-        ++ends[steps.back().track];
-        for (const char* const unit : {"calculate_new_p", "displace_vertex", "transform", "pass_or_tessellate"})
-            require_each(units.count(unit) == 1, "a flow that ends has been everywhere before");
-    }
-    CHECK(broken == std::map<std::string, std::size_t>{});
-    CHECK((unfinished == 0) == whole);
-    if (!whole)
-        return;
-    CHECK(timeline.flows.size() == count(statistics, "timing.get_triangle", "items"));
-    CHECK(ends["tessellation"] == count(statistics, "timing.tessellation", "items"));
-    CHECK(ends["lighting"] == count(statistics, "timing.lighting", "items"));
-    CHECK(ends["pass_or_tessellate"] == timeline.flows.size() - ends["tessellation"] - ends["lighting"]);
-    CHECK((ends["pass_or_tessellate"] > 0) == (design.size() > 1 && design[1] == "hardware.culling=back"));
-}
-
 TEST_CASE("a deadlock leaves its traces and no files of an earlier run") {
     const TestFolder here;
-    const std::vector<std::string> stall{
-        "--set", "hardware.queue_capacity=4", "--set", "hardware.queue_overflow=stall", "--vcd", "--timeline"};
+    const std::vector<std::string> stall{"--set", "hardware.queue_capacity=4", "--set", "hardware.queue_overflow=stall",
+                                         "--vcd"};
     run_small(here, {});
     const ProgramEnd end = run_tessera(small_run(stall), here.path());
     INFO(end.text());
     REQUIRE(end.exit_code == 3);
-    CHECK_THAT(end.err, Contains("trace.vcd") && Contains("timeline.json") && Contains("out"));
+    CHECK_THAT(end.err, Contains("trace.vcd") && Contains("out"));
     std::vector<std::string> names;
     for (const auto& entry : fs::directory_iterator(here.path() / "out"))
         names.push_back(entry.path().filename().string());
     std::sort(names.begin(), names.end());
-    CHECK(names == std::vector<std::string>{"job.toml", "timeline.json", "trace.vcd"});
+    CHECK(names == std::vector<std::string>{"job.toml", "trace.vcd"});
     const VcdFile vcd(here.path() / "out/trace.vcd");
     CHECK(vcd["tessera.triangle_queue.stalled"].at(vcd.end) == 1);
-    CHECK(nlohmann::json::parse(read_all(here.path() / "out/timeline.json")).at("traceEvents").size() > 20);
 }
 
 TEST_CASE("invalid traces are refused, and nothing is written") {
@@ -495,8 +310,8 @@ TEST_CASE("invalid traces are refused, and nothing is written") {
     const auto trace_refused = [&](const Arguments& arguments, const std::vector<std::string>& words) {
         refused(Arguments{"run", "--set", "output.folder=out/of/it"} + arguments, here, words);
     };
-    for (const auto& [option, key] : std::vector<std::pair<std::string, std::string>>{
-             {"--vcd", "output.vcd"}, {"--timeline", "output.timeline"}, {"--fst", "output.vcd"}})
+    for (const auto& [option, key] :
+         std::vector<std::pair<std::string, std::string>>{{"--vcd", "output.vcd"}, {"--fst", "output.vcd"}})
         trace_refused({option, "--set", "mode=functional"}, {key, "mode = \"timed\""});
     const auto refused_timed = [&](const Arguments& arguments, const std::vector<std::string>& words) {
         trace_refused(Arguments{"--vcd"} + arguments, words);
@@ -512,8 +327,7 @@ TEST_CASE("invalid traces are refused, and nothing is written") {
 
 TEST_CASE("a limit that ends a traced run leaves no trace") {
     const TestFolder here;
-    const ProgramEnd end =
-        run_tessera(small_run({"--vcd", "--timeline", "--set", "limits.triangles=100"}), here.path());
+    const ProgramEnd end = run_tessera(small_run({"--vcd", "--set", "limits.triangles=100"}), here.path());
     INFO(end.text());
     CHECK(end.exit_code == 4);
     CHECK(here.names().empty());

@@ -165,7 +165,7 @@ TEST_CASE("every unit has its own number in any design") {
     for (const HeightTestKind& kind : height_test_kinds)  // the Curvature Test with a second side of the map
         units_of["height_test=" + std::string(kind.name)] = kind.name == "curvature" ? 19 : 18;
     for (const auto& [design, units] : units_of) {
-        const ProgramEnd end = run_tessera({"run", "--timeline", "--trace-units", "no_such_unit", "--set",
+        const ProgramEnd end = run_tessera({"run", "--vcd", "--trace-units", "no_such_unit", "--set",
                                             "hardware." + design, "--set", "output.folder=out"},
                                            here.path());
         INFO(end.text());
