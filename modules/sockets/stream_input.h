@@ -71,6 +71,30 @@ class StreamInput : public tlm::tlm_target_socket<32, Stream<Payload>>,
             admit();
     }
 
+    /// BEGIN_REQ, this many cycles from now. Returns true if the item is accepted at once.
+    bool offer(Payload& payload, std::uint64_t cycles = 0) {
+        if (!pending_.empty())
+            stream_protocol_error(this->name(), "BEGIN_REQ before END_REQ of the previous item", clock_);
+        if (unit_ == nullptr)
+            stream_protocol_error(this->name(), "nb_transport in functional mode", clock_);
+        const std::uint64_t wait = stalls_.next() + cycles;
+        if (wait == 0 && !buffer_.full()) {
+            push(payload);
+            if (empty_inputs_ == nullptr || *empty_inputs_ == 0)
+                clock_->wake(*unit_);
+            else
+                clock_->wake_if_observed(*unit_);
+            return true;
+        }
+        pending_.hold(payload, clock_->cycle() + wait);
+        set_waiting(true);
+        if (!buffer_.full())
+            clock_->wake_at(*unit_, pending_.due_cycle());
+        else
+            clock_->wake_if_observed(*unit_);
+        return false;
+    }
+
   private:
     /// Moves the waiting item into the buffer, if it is due and there is room.
     void admit() override {
@@ -91,27 +115,10 @@ class StreamInput : public tlm::tlm_target_socket<32, Stream<Payload>>,
     tlm::tlm_sync_enum nb_transport_fw(Payload& payload, tlm::tlm_phase& phase, sc_core::sc_time& delay) override {
         if (phase != tlm::BEGIN_REQ)
             stream_protocol_error(this->name(), "a phase other than BEGIN_REQ", clock_);
-        if (!pending_.empty())
-            stream_protocol_error(this->name(), "BEGIN_REQ before END_REQ of the previous item", clock_);
-        if (unit_ == nullptr)
-            stream_protocol_error(this->name(), "nb_transport in functional mode", clock_);
-        const std::uint64_t wait = stalls_.next() + clock_->cycles(delay);
-        if (wait == 0 && !buffer_.full()) {
-            push(payload);
-            if (empty_inputs_ == nullptr || *empty_inputs_ == 0)
-                clock_->wake(*unit_);
-            else
-                clock_->wake_if_observed(*unit_);
-            phase = tlm::END_REQ;
-            return tlm::TLM_UPDATED;
-        }
-        pending_.hold(payload, clock_->cycle() + wait);
-        set_waiting(true);
-        if (!buffer_.full())
-            clock_->wake_at(*unit_, pending_.due_cycle());
-        else
-            clock_->wake_if_observed(*unit_);
-        return tlm::TLM_ACCEPTED;
+        if (!offer(payload, clock_ == nullptr ? 0 : clock_->cycles(delay)))
+            return tlm::TLM_ACCEPTED;
+        phase = tlm::END_REQ;
+        return tlm::TLM_UPDATED;
     }
 
     void b_transport(Payload& payload, sc_core::sc_time& delay) override { serve_(server_, payload, delay); }

@@ -6,13 +6,11 @@
 
 #include "modules/sockets/packed_item.h"
 #include "modules/sockets/stream.h"
+#include "modules/sockets/stream_input.h"
 #include "modules/timing/cycle_scheduler.h"
 #include "modules/timing/design.h"
 
 namespace tessera {
-
-template <class Payload>
-class StreamInput;
 
 /// A unit's output (timed mode: one item on offer at a time). Checks the consumer's phases. BUSWIDTH has no meaning for
 /// a stream; widths follow from the formats.
@@ -70,13 +68,12 @@ class StreamOutput : public tlm::tlm_initiator_socket<32, Stream<Payload>>,
         if (wires_.formats != nullptr)
             packed_ = through_wires(payload);
         Payload& sent = wires_.formats != nullptr ? packed_ : payload;
-        tlm::tlm_phase phase = tlm::BEGIN_REQ;
-        sc_core::sc_time delay = sc_core::SC_ZERO_TIME;
-        const tlm::tlm_sync_enum status = (*this)->nb_transport_fw(sent, phase, delay);
-        if (status == tlm::TLM_UPDATED && phase == tlm::END_REQ)
+        if (!bound_) {
+            bound_ = true;
+            input_ = dynamic_cast<StreamInput<Payload>*>(this->get_base_port().get_interface());
+        }
+        if (input_ != nullptr ? input_->offer(sent) : offer_by_tlm(sent))
             return true;
-        if (status != tlm::TLM_ACCEPTED)
-            stream_protocol_error(this->name(), "BEGIN_REQ was answered by neither END_REQ nor TLM_ACCEPTED", clock_);
         on_offer_ = &sent;
         return false;
     }
@@ -102,6 +99,17 @@ class StreamOutput : public tlm::tlm_initiator_socket<32, Stream<Payload>>,
         int tag_bits = 0;
     };
 
+    bool offer_by_tlm(Payload& payload) {
+        tlm::tlm_phase phase = tlm::BEGIN_REQ;
+        sc_core::sc_time delay = sc_core::SC_ZERO_TIME;
+        const tlm::tlm_sync_enum status = (*this)->nb_transport_fw(payload, phase, delay);
+        if (status == tlm::TLM_UPDATED && phase == tlm::END_REQ)
+            return true;
+        if (status != tlm::TLM_ACCEPTED)
+            stream_protocol_error(this->name(), "BEGIN_REQ was answered by neither END_REQ nor TLM_ACCEPTED", clock_);
+        return false;
+    }
+
     Payload through_wires(const Payload& payload) const {
         if constexpr (is_described<Payload>) {
             PackedItem packed;
@@ -125,6 +133,8 @@ class StreamOutput : public tlm::tlm_initiator_socket<32, Stream<Payload>>,
 
     CycleScheduler* clock_ = nullptr;
     CycleProcess* unit_ = nullptr;
+    bool bound_ = false;                     // input_ is known
+    StreamInput<Payload>* input_ = nullptr;  // bound with nothing in between: called without TLM; null: by TLM
     const Payload* on_offer_ = nullptr;
     Interposer interposer_;
     Wires wires_;

@@ -28,12 +28,18 @@ class Fork {
             SC_REPORT_ERROR("tessera/fork", "more than four outputs");
             return;
         }
+        if constexpr (std::is_same_v<Payload, Item>)
+            only_output_ = count_ == 0 && only == all_parts ? &output : nullptr;
+        else
+            only_output_ = nullptr;
         to_[count_] = std::make_unique<To<Payload>>(output, select);
         only_[count_++] = only;
     }
 
     /// Timed mode: offers the item on those of its outputs that have not delivered it. Returns true once all have.
     bool deliver(Item& item) {
+        if (only_output_ != nullptr)
+            return only_output_->deliver(item);
         bool all = true;
         for (std::size_t k = 0; k < count_; ++k) {
             const unsigned bit = 1u << k;
@@ -114,7 +120,8 @@ class Fork {
     std::array<std::unique_ptr<Branch>, most> to_;
     std::array<Parts, most> only_{};
     std::size_t count_ = 0;
-    unsigned taken_ = 0;  // outputs that have delivered the item under way, one bit each
+    StreamOutput<Item>* only_output_ = nullptr;  // if there is no other, and it is for all parts
+    unsigned taken_ = 0;                         // outputs that have delivered the item under way, one bit each
 };
 
 }  // namespace tessera

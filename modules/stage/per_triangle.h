@@ -19,6 +19,12 @@ class PerTriangle {
 
     /// Returns null if there is no state for this triangle.
     State* find(Tag tag) {
+        // Mostly the triangles' tags are consecutive.
+        if (!entries_.empty()) {
+            const std::size_t guess = tag - entries_.front().tag;
+            if (guess < entries_.size() && entries_.at(guess).tag == tag)
+                return &entries_.at(guess).state;
+        }
         for (std::size_t k = 0; k < entries_.size(); ++k)
             if (entries_.at(k).tag == tag)
                 return &entries_.at(k).state;

@@ -73,6 +73,9 @@ class Stage : public Unit {
     std::uint64_t over_ports(Figure figure) const;
     void b_transport(In& item, sc_core::sc_time& delay);
     void read_entries(const In& item, Entries& entries, sc_core::sc_time& delay);
+    template <bool has_tables>
+    void step();
+    template <bool has_tables>
     void start(std::uint64_t cycle);
     void take_answers(std::uint64_t cycle);
 

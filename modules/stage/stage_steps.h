@@ -139,13 +139,14 @@ void Stage<In, Out>::read_entries(const In& item, Entries& entries, sc_core::sc_
 }
 
 template <class In, class Out>
+template <bool has_tables>
 void Stage<In, Out>::start(std::uint64_t cycle) {
     Machinery& m = *machinery_;
     typename Machinery::Slot& slot = m.pipeline.start(cycle);
     slot.item = input_->front();
-    slot.requests = slot.answered = 0;
     activity_.item_in(cycle);
-    if (reads_tables()) {
+    if constexpr (has_tables) {
+        slot.requests = slot.answered = 0;
         m.reads.clear();
         m.asked = m.asked_entries = 0;
         reads(slot.item, m.reads);
@@ -156,7 +157,7 @@ void Stage<In, Out>::start(std::uint64_t cycle) {
             slot.count[k] = static_cast<std::uint8_t>(m.reads.count(k));
         }
     }
-    if (slot.requests > 0)
+    if (has_tables && slot.requests > 0)
         m.pipeline.finish(m.pipeline.size() - 1, never);
     else
         slot.result = process(slot.item, m.entries);
@@ -186,8 +187,16 @@ void Stage<In, Out>::take_answers(std::uint64_t cycle) {
 
 template <class In, class Out>
 void Stage<In, Out>::step() {
+    if (reads_tables())
+        step<true>();
+    else
+        step<false>();
+}
+
+template <class In, class Out>
+template <bool has_tables>
+void Stage<In, Out>::step() {
     const std::uint64_t cycle = clock_.last_cycle();
-    const bool has_tables = reads_tables();
     Machinery& m = *machinery_;
     if (has_tables)
         take_answers(cycle);
@@ -202,7 +211,7 @@ void Stage<In, Out>::step() {
         lacking = may_wait_ && !may_start(input_->front());
         if (lacking)
             break;
-        start(cycle);
+        start<has_tables>(cycle);
     }
     if (has_tables)
         m.skip_processed();

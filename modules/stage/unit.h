@@ -35,7 +35,7 @@ class Unit : public CycleProcess, public sc_core::sc_module {
     Unit(const sc_core::sc_module_name& name, CycleScheduler& clock) : sc_module(name), clock_(clock) {}
 
     std::uint64_t now() const { return clock_.cycle(); }
-    void wake_at(std::uint64_t cycle) {
+    [[gnu::always_inline]] void wake_at(std::uint64_t cycle) {
         if (cycle != ~std::uint64_t{0})
             clock_.wake_at(*this, cycle);
     }

@@ -24,15 +24,12 @@ class ActivityObserver {
 class Activity {
   public:
     /// Sets the state at the end of `cycle`. It lasts until another is set. The last call in a cycle counts.
-    void set(std::uint64_t cycle, State state, const sc_core::sc_object* by = nullptr) {
-        if (state != state_ || by != by_) {
-            close(cycle);
-            state_ = state;
-            by_ = by;
-        }
+    [[gnu::always_inline]] void set(std::uint64_t cycle, State state, const sc_core::sc_object* by = nullptr) {
+        if (state != state_ || by != by_)
+            change(cycle, state, by);
     }
 
-    void item_in(std::uint64_t cycle) {
+    [[gnu::always_inline]] void item_in(std::uint64_t cycle) {
         end_of_cycle_before(cycle);
         item_cycles_ -= cycle;
         ++items_in_;
@@ -40,7 +37,7 @@ class Activity {
         if (observer_ != nullptr)
             observer_->item(cycle, true);
     }
-    void item_out(std::uint64_t cycle) {
+    [[gnu::always_inline]] void item_out(std::uint64_t cycle) {
         end_of_cycle_before(cycle);
         item_cycles_ += cycle;
         ++items_out_;
@@ -82,6 +79,11 @@ class Activity {
     void observe(ActivityObserver* observer) { observer_ = observer; }
 
   private:
+    [[gnu::noinline]] void change(std::uint64_t cycle, State state, const sc_core::sc_object* by) {
+        close(cycle);
+        state_ = state;
+        by_ = by;
+    }
     void close(std::uint64_t cycle) {
         if (cycle <= since_)
             return;

@@ -33,7 +33,6 @@ CycleScheduler::CycleScheduler(const sc_core::sc_module_name& name, const sc_cor
     most_cycles_ = (UINT64_MAX - first_edge.value()) / period_;
     for (std::size_t cycles = 0; cycles < delays_.size(); ++cycles)
         delays_[cycles] = sc_core::sc_time::from_value(cycles * period_);
-    units_.reserve(most_units);
     far_.reserve(most_units);
     SC_HAS_PROCESS(CycleScheduler);
     SC_METHOD(tick);
@@ -42,10 +41,10 @@ CycleScheduler::CycleScheduler(const sc_core::sc_module_name& name, const sc_cor
 }
 
 void CycleScheduler::attach(CycleProcess& unit) {
-    if (units_.size() == most_units)
+    if (attached_ == most_units)
         SC_REPORT_ERROR("tessera/clock", "more than 64 units on one clock");
-    unit.bit_ = std::uint64_t{1} << units_.size();
-    units_.push_back(&unit);
+    unit.bit_ = std::uint64_t{1} << attached_;
+    units_[attached_++] = &unit;
 }
 
 void CycleScheduler::wake_far(const CycleProcess& unit, std::uint64_t cycle) {
@@ -57,9 +56,8 @@ void CycleScheduler::wake_from_outside(const CycleProcess& unit, std::uint64_t c
     // The table starts at the last cycle in which processes were called.
     cycle = std::max(cycle, first_cycle_not_before_now());
     if (cycle - cycle_ < span) {
-        const std::uint64_t place = cycle % span;
-        due_[place] |= unit.bit_;
-        occupied_[place / 64] |= std::uint64_t{1} << place % 64;
+        due_[cycle % span] |= unit.bit_;
+        last_due_ = std::max(last_due_, cycle);
     } else {
         wake_far(unit, cycle);
     }
@@ -82,26 +80,17 @@ void CycleScheduler::end_time() {
 
 void CycleScheduler::take_far() {
     while (!far_.empty() && far_.front().first - cycle_ < span) {
-        const std::uint64_t place = far_.front().first % span;
-        due_[place] |= far_.front().second;
-        occupied_[place / 64] |= std::uint64_t{1} << place % 64;
+        due_[far_.front().first % span] |= far_.front().second;
+        last_due_ = std::max(last_due_, far_.front().first);
         std::pop_heap(far_.begin(), far_.end(), std::greater<>());
         far_.pop_back();
     }
 }
 
 bool CycleScheduler::find_next(std::uint64_t& next) const {
-    const std::uint64_t first = (cycle_ + 1) % span;
-    for (std::uint64_t step = 0; step <= span / 64; ++step) {
-        const std::uint64_t word = (first / 64 + step) % (span / 64);
-        std::uint64_t bits = occupied_[word];
-        if (step == 0)
-            bits &= ~std::uint64_t{0} << first % 64;
-        else if (step == span / 64)
-            bits &= ~(~std::uint64_t{0} << first % 64);
-        if (bits != 0) {
-            const std::uint64_t place = word * 64 + static_cast<unsigned>(__builtin_ctzll(bits));
-            next = cycle_ + 1 + (place + span - first) % span;
+    for (std::uint64_t cycle = cycle_ + 1; cycle <= last_due_; ++cycle) {
+        if (due_[cycle % span] != 0) {
+            next = cycle;
             return true;
         }
     }
@@ -141,15 +130,22 @@ bool CycleScheduler::begin_observing() {
 }
 
 /// Whether nothing else will happen until the next cycle, `cycles` after the present one.
-bool CycleScheduler::may_run_ahead(std::uint64_t cycles) const {
-    // Two cheap questions; the third, for the time, is rarely needed.
-    if (observer_ != nullptr || sc_core::sc_pending_activity_at_current_time())
+bool CycleScheduler::may_run_ahead(std::uint64_t cycles) {
+    if (observer_ != nullptr)
         return false;
-    return !sc_core::sc_pending_activity_at_future_time() ||
-           sc_core::sc_time_to_pending_activity() > lag_ + duration(cycles);
+    if (until_asked_ == 0) {  // asking is slow
+        until_asked_ = 16;
+        if (sc_core::sc_pending_activity_at_current_time())
+            return false;
+        next_event_ =
+            sc_core::sc_pending_activity_at_future_time() ? sc_core::sc_time_to_pending_activity().value() : UINT64_MAX;
+    }
+    --until_asked_;
+    return next_event_ > lag_.value() + cycles * period_;
 }
 
 void CycleScheduler::tick() {
+    until_asked_ = 0;
     for (unsigned ahead = 0; run_cycle() && ahead < most_ahead_ && may_run_ahead(next_tick_ - cycle_); ++ahead)
         lag_ += duration(next_tick_ - cycle_);
     if (scheduled_)
@@ -163,11 +159,11 @@ bool CycleScheduler::run_cycle() {
     running_ = true;
     scheduled_ = false;
     ++cycles_without_progress_;
-    take_far();
+    if (!far_.empty())
+        take_far();
     const std::uint64_t place = cycle_ % span;
     due_now_ = due_[place];
     due_[place] = 0;
-    occupied_[place / 64] &= ~(std::uint64_t{1} << place % 64);
     if (observer_ != nullptr && begin_observing()) {
         const std::uint64_t called = call_due<true>();
         observer_->end_of_cycle(cycle_, called);

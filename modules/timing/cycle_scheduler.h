@@ -115,15 +115,14 @@ class CycleScheduler : public sc_core::sc_module {
     }
 
     /// Calls `unit` in a cycle, the present one or later.
-    void wake_at(const CycleProcess& unit, std::uint64_t cycle) {
+    [[gnu::always_inline]] void wake_at(const CycleProcess& unit, std::uint64_t cycle) {
         if (!running_) {
             wake_from_outside(unit, cycle);
         } else if (cycle <= cycle_) {
             due_now_ |= unit.bit_;
         } else if (cycle - cycle_ < span) {
-            const std::uint64_t place = cycle % span;
-            due_[place] |= unit.bit_;
-            occupied_[place / 64] |= std::uint64_t{1} << place % 64;
+            due_[cycle % span] |= unit.bit_;
+            last_due_ = cycle > last_due_ ? cycle : last_due_;
         } else {
             wake_far(unit, cycle);
         }
@@ -195,7 +194,7 @@ class CycleScheduler : public sc_core::sc_module {
 
     void tick();
     bool run_cycle();
-    bool may_run_ahead(std::uint64_t cycles) const;
+    bool may_run_ahead(std::uint64_t cycles);
     template <bool Observed>
     std::uint64_t call_due();
     bool begin_observing();
@@ -219,15 +218,18 @@ class CycleScheduler : public sc_core::sc_module {
     std::array<sc_core::sc_time, 16> delays_;  // of 0, 1, ... cycles: sc_time is slow to construct
     sc_core::sc_event tick_event_{"tick_event"};
     sc_core::sc_event quiet_{"quiet"};
-    std::vector<CycleProcess*> units_;
-    std::array<std::uint64_t, span> due_{};            // by cycle modulo span: one bit per unit
-    std::array<std::uint64_t, span / 64> occupied_{};  // one bit per cycle: due_ is not zero
-    std::vector<Far> far_;                             // a heap, earliest first
+    std::array<CycleProcess*, most_units> units_{};
+    std::size_t attached_ = 0;
+    std::array<std::uint64_t, span> due_{};  // by cycle modulo span: one bit per unit
+    std::uint64_t last_due_ = 0;             // the last cycle with a bit in due_
+    std::vector<Far> far_;                   // a heap, earliest first
     std::uint64_t due_now_ = 0;
     std::uint64_t cycle_ = 0;
     std::uint64_t next_tick_ = 0;
     unsigned most_ahead_ = 0;
-    sc_core::sc_time lag_;  // from simulated time to the beginning of the present cycle
+    unsigned until_asked_ = 0;      // cycles until the kernel is asked again
+    std::uint64_t next_event_ = 0;  // its next event, as time after the tick
+    sc_core::sc_time lag_;          // from simulated time to the beginning of the present cycle
     bool running_ = false;
     bool scheduled_ = false;
     std::uint64_t cycles_without_progress_ = 0;

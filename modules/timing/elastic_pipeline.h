@@ -24,7 +24,7 @@ class ElasticPipeline {
         : latency_(timing.latency),
           interval_(timing.interval),
           servers_(servers),
-          next_start_(servers, 0),
+          next_starts_(servers == 1 ? 0 : servers, 0),
           stages_(register_stages(timing, servers, further_stages)) {}
 
     bool empty() const { return stages_.empty(); }
@@ -32,12 +32,16 @@ class ElasticPipeline {
     std::size_t size() const { return stages_.size(); }
     std::size_t capacity() const { return stages_.capacity(); }
 
-    bool may_start(std::uint64_t cycle) const { return !full() && cycle >= next_start_[server_]; }
+    bool may_start(std::uint64_t cycle) const { return !full() && cycle >= next_start_; }
 
     /// Starts an item, to be filled in. It is finished at cycle + latency, or when set by `finish`.
     Item& start(std::uint64_t cycle) {
-        next_start_[server_] = cycle + interval_;
-        server_ = server_ + 1 == servers_ ? 0 : server_ + 1;
+        next_start_ = cycle + interval_;
+        if (servers_ != 1) {
+            next_starts_[server_] = next_start_;
+            server_ = server_ + 1 == servers_ ? 0 : server_ + 1;
+            next_start_ = next_starts_[server_];
+        }
         Stage& stage = stages_.push();
         stage.finished = cycle + latency_;
         return stage.item;
@@ -60,9 +64,7 @@ class ElasticPipeline {
         return !empty() && stages_.front().finished > cycle ? stages_.front().finished : never;
     }
     /// The next cycle after `cycle` at which an item may start; `never` if that depends on a free place.
-    std::uint64_t next_start(std::uint64_t cycle) const {
-        return !full() && next_start_[server_] > cycle ? next_start_[server_] : never;
-    }
+    std::uint64_t next_start(std::uint64_t cycle) const { return !full() && next_start_ > cycle ? next_start_ : never; }
 
   private:
     struct Stage {
@@ -73,8 +75,9 @@ class ElasticPipeline {
     std::uint64_t latency_;
     std::uint64_t interval_;
     std::size_t servers_;
-    std::vector<std::uint64_t> next_start_;  // by server
-    std::size_t server_ = 0;                 // the next server
+    std::vector<std::uint64_t> next_starts_;  // by server, if there are several
+    std::uint64_t next_start_ = 0;            // of the next server
+    std::size_t server_ = 0;                  // the next server
     Ring<Stage> stages_;
 };
 

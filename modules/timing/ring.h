@@ -28,10 +28,19 @@ class Ring {
     const Item& back() const { return items_[last_]; }
 
     /// Must not be full. Returns the new item with the old contents of its place, which the caller must overwrite.
-    Item& push() { return items_[last_ = place(size_++)]; }
+    Item& push() {
+        ++size_;
+        last_ = next_;
+        next_ = next_ + 1 == capacity_ ? 0 : next_ + 1;
+        return items_[last_];
+    }
     void push(const Item& item) { push() = item; }
     /// Must not be empty.
-    void pop() { first_ = --size_ == 0 ? 0 : place(1); }
+    void pop() {
+        first_ = first_ + 1 == capacity_ ? 0 : first_ + 1;
+        if (--size_ == 0)
+            first_ = next_ = 0;
+    }
 
     /// At the other ends: push_front() adds a new oldest item, pop_back() removes the newest.
     Item& push_front() {
@@ -40,8 +49,9 @@ class Ring {
         return items_[first_];
     }
     void pop_back() {
+        next_ = (next_ == 0 ? capacity_ : next_) - 1;
         if (--size_ == 0)
-            first_ = 0;
+            first_ = next_ = 0;
     }
 
     /// Doubles the capacity, at least to one; the items keep their order.
@@ -52,6 +62,7 @@ class Ring {
         items_.swap(larger);
         capacity_ = items_.size();
         first_ = 0;
+        next_ = size_ == capacity_ ? 0 : size_;
         last_ = size_ == 0 ? 0 : size_ - 1;
     }
 
@@ -64,6 +75,7 @@ class Ring {
     std::vector<Item> items_;
     std::size_t capacity_;
     std::size_t first_ = 0;
+    std::size_t next_ = 0;  // place of the next push
     std::size_t last_ = 0;
     std::size_t size_ = 0;
 };

@@ -33,6 +33,11 @@ FamilySequenceTests::FamilySequenceTests(const sc_core::sc_module_name& name, co
         add_input(context, from_tex_coord_test[lane]);
         add_input(context, from_view_test[lane]);
         to_pass_or_tessellate[lane].clocked_by(context, *this);
+        // An edge is taken when all four have arrived.
+        normal_operands[lane].waits_for_all(lanes_[lane].missing);
+        height_operands[lane].waits_for_all(lanes_[lane].missing);
+        from_tex_coord_test[lane].waits_for_all(lanes_[lane].missing);
+        from_view_test[lane].waits_for_all(lanes_[lane].missing);
     }
     for (std::size_t k = 0; k < normals_.size(); ++k) {
         normals_[k].in_test = Ring<Edge>(places_);
@@ -158,7 +163,7 @@ void FamilySequenceTests::step() {
         changed = take_results();
         changed = leave(cycle) || changed;
         for (std::size_t lane = 0; lane < lanes_.size(); ++lane)
-            changed = take_edge(lane, cycle) || changed;
+            changed = (lanes_[lane].missing == 0 && take_edge(lane, cycle)) || changed;
         changed = send_to_normal_test() || changed;
         changed = send_to_summed_height_test() || changed;
     }

@@ -44,6 +44,7 @@ class FamilySequenceTests : public SequencingUnit {
 
   private:
     struct Lane {
+        unsigned missing = 0;  // empty inputs
         std::uint64_t next_in = 0, next_out = 0;
         TestedEdge leaving;
     };
