@@ -125,7 +125,7 @@ class Derivation {
         if (middle.x < 0 || middle.y < 0 || middle.x >= static_cast<double>(source_.columns) ||
             middle.y >= static_cast<double>(source_.rows))
             return nothing;
-        // Edges without an error have midpoints in the same texel, too.
+        // The texel may also hold the midpoint of an edge without an error, which is not bisected.
         const std::uint32_t number = number_at_[source_.entry(middle)];
         return number != nothing && source_.midpoints[number] == middle ? number : nothing;
     }

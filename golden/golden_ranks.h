@@ -27,7 +27,7 @@ struct RankSource {
     /// No two lie in one texel.
     std::vector<glm::dvec2> midpoints;
 
-    /// Of the entry of a midpoint.
+    /// Number of a midpoint's entry: row * columns + column.
     std::size_t entry(const glm::dvec2& midpoint) const {
         return static_cast<std::size_t>(midpoint.y) * static_cast<std::size_t>(columns) +
                static_cast<std::size_t>(midpoint.x);

@@ -37,7 +37,6 @@ class BankOfEntry {
     /// Sets the table's number of columns.
     void lay_out(std::uint32_t columns) { columns_ = columns; }
 
-    bool several() const { return banks_ > 1; }
     std::size_t operator()(std::uint64_t address) const {
         if (banks_ == 1)
             return 0;

@@ -3,7 +3,6 @@
 #include <array>
 #include <cstddef>
 #include <string>
-#include <type_traits>
 
 #include "modules/sockets/memory_port.h"
 #include "modules/stage/fork.h"

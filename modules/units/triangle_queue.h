@@ -50,7 +50,6 @@ class TriangleQueue : public Unit {
     std::size_t on_chip_high_water_mark() const { return on_chip_high_water_mark_; }
     std::uint64_t spilled() const { return spilled_; }
     std::uint64_t refilled() const { return refilled_; }
-    const LevelHistory& history() const { return history_; }
     LevelHistory& history() { return history_; }
     /// With QueueOverflow::error: there was no place for a triangle.
     bool overflowed() const { return overflowed_; }

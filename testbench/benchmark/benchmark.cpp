@@ -20,8 +20,8 @@
 
 // One process, one job: half donut on the plane of 18 triangles with a map of 1024 x 1024 texels, about 0.2 million
 // triangles out; an argument sets another number of texels per side. Measures, in edges evaluated and triangles
-// finished per second: the golden model, the bare datapath, functional and timed mode of both machines, timed mode by a
-// schedule, and the device on a loosely timed bus.
+// finished per second: the golden model, the bare datapath, functional and timed mode of both machines, and the device on
+// a loosely timed bus.
 
 namespace tessera {
 namespace {

@@ -21,7 +21,6 @@ using datapath::MapFilter;
 using datapath::SummedHeightUnit;
 using datapath::Triangulation;
 enum class Mode { functional, timed };
-/// The engine that counts the cycles of timed mode.
 enum class DesignPreset { paper, modern };
 
 /// Whether mesh.file names a mesh of this source.
@@ -119,8 +118,8 @@ struct Job {
         bool obj = false;
         bool picture = true;
         bool vcd = false;               // timed mode: waveforms
-        std::int64_t trace_from = 0;    // first cycle of both
-        std::int64_t trace_to = 10000;  // last cycle of both
+        std::int64_t trace_from = 0;    // first cycle of waveforms
+        std::int64_t trace_to = 10000;  // last cycle of waveforms
         std::string trace_units;        // only units whose name contains one of these words
     } output;
 

@@ -460,8 +460,8 @@ class BaseCheck {
         }
     }
 
-    /// The whole periods by which the host moved a triangle on repeated axes. The mean of the corners tells them also
-    /// where a period is one LSB, which rounding may add to a corner.
+    /// The whole periods by which the host moved a triangle on repeated axes. Taken from the mean of the corners: where a
+    /// period is one LSB, rounding may move a single corner by a period.
     glm::dvec2 periods_added(const datapath::Triangle& triangle, const Corners& corners) const {
         const golden::Map& map = golden_.map();
         glm::dvec2 moved(0);  // texels

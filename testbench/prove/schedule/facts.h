@@ -7,7 +7,7 @@ namespace tessera::schedule {
 /// The parts of a triangle, one bit each: three vertices, three normals, three edges.
 constexpr unsigned parts_of_a_triangle = 9;
 constexpr unsigned first_edge_part = 6;
-constexpr unsigned vertex_parts = 0007, edge_parts = 0700, all_parts = 0777;
+constexpr unsigned vertex_parts = 0007, edge_parts = 0700;
 
 /// The table entries that a unit read for one part of a triangle: up to three requests, one after another, all to the
 /// same one of its memories.
@@ -18,7 +18,7 @@ struct PartReads {
     std::uint8_t requests = 0;
     std::uint8_t memory = 0;                            ///< which of the unit's memories
     std::array<std::uint8_t, most_requests + 1> first;  ///< index of each request's first entry; then their number
-    std::array<std::uint8_t, most_entries> banks;       ///< of each entry, if the table has more than one
+    std::array<std::uint8_t, most_entries> banks;       ///< of each entry
 
     const std::uint8_t* banks_of(unsigned request) const { return &banks[first[request]]; }
     unsigned entries_of(unsigned request) const { return first[request + 1] - unsigned{first[request]}; }
@@ -32,7 +32,7 @@ struct Facts {
     using Reads = std::array<PartReads, parts_of_a_triangle>;
 
     std::uint16_t parts = 0;  ///< parts that are not known yet
-    bool tested = false;      ///< the vertices and edges go to the tests
+    bool tested = false;      ///< the vertices and edges go to the tests; false: only normals are missing
     Reads displace_vertex, height_test, normal_test;
     Way way = Way::dropped;
     unsigned children = 0;

@@ -24,8 +24,8 @@ class Machine {
     Machine(const Machine&) = delete;
     Machine& operator=(const Machine&) = delete;
 
-    /// The host offers this many triangles, from this cycle on.
-    void send(std::uint64_t triangles, Cycle cycle) { source_.send(triangles, cycle); }
+    /// The host offers this many triangles, from cycle 0 on. Call once.
+    void send(std::uint64_t triangles) { source_.send(triangles); }
     /// The triangle that Get Triangle begins next. Call pass() for it before the next call.
     const Source::Next& next() { return next_ = source_.next(free_); }
     void pass(const Facts& facts);
@@ -122,7 +122,7 @@ class Machine {
         States* states = nullptr;
         Level* level = nullptr;
     };
-    std::array<Account, units> accounts_{};  // null: no such unit
+    std::array<Account, units> accounts_{};  // null: the Triangle Queue, which Source accounts for, and the rasteriser
     std::array<const Ports*, units> ports_{};
 };
 

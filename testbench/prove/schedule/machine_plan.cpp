@@ -41,7 +41,6 @@ Plan plan_of(const tessera::Pipeline& machine, const Rasteriser& rasteriser, con
     plan.source.queue = pipeline_plan(t.triangle_queue);
     plan.source.newest_first = design.queue.order == TriangleOrder::lifo;
     plan.source.watermark = std::max<std::uint64_t>(design.queue.watermark, 1);
-    plan.source.get_triangle = get_triangle;
     plan.get_triangle = pipeline_plan(t.get_triangle);
     plan.calculate_new_p = {input(machine.calculate_new_p.from_get_triangle), pipeline_plan(t.calculate_new_p)};
     plan.displace_vertex = {input(machine.displace_vertex.from_calculate_new_p),
@@ -79,7 +78,7 @@ Plan plan_of(const tessera::Pipeline& machine, const Rasteriser& rasteriser, con
                                                      registers.displacement_map, tested);
     plan.normal_map = table_plan(machine.normal_map, t.normal_map, t.stalls, registers.normal_map, bumped);
     plan.height_table = table_plan(machine.height_table, t.*kind.table_timing, t.stalls, registers.height_table,
-                                   kind.requests * (tested - 1) + 1);
+                                   kind.requests * plan.tests.height_test.pipeline.stages + 1);
     return plan;
 }
 

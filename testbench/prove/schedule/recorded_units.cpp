@@ -1,13 +1,28 @@
 #include "testbench/prove/schedule/recorded_units.h"
 
+#include <algorithm>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "modules/datapath/cull.h"
-#include "testbench/common/error.h"
+#include "modules/datapath/tessellate.h"
+#include "testbench/common/hash.h"
 
 namespace tessera::schedule {
 
 namespace {
+
+/// Of its base triangle and its corners, in order.
+std::uint64_t hash_of(const datapath::Triangle& triangle) {
+    std::uint64_t hash = triangle.base;
+    for (const datapath::Vertex& v : triangle.vertices) {
+        for (const auto value : {v.position.x, v.position.y, v.position.z})
+            hash = mix_hash(hash, static_cast<std::uint64_t>(value));
+        hash = mix_hash(hash, std::uint64_t{v.texture.u} << 32 | v.texture.v);
+    }
+    return hash;
+}
 
 /// A unit that records the reads of its items.
 template <class Its, class Item>
@@ -47,7 +62,6 @@ RecordedPass& PassRecord::pass(std::uint32_t number) {
 
 void PassRecord::read(Reader reader, const PartTag& tag, const Reads& reads, const std::vector<BankOfEntry>& memories) {
     RecordedPass& pass = this->pass(tag.origin.pass);
-    pass.base = tag.origin.base;
     pass.facts.parts = static_cast<std::uint16_t>(pass.facts.parts | 1u << tag.part);
     PartReads& part = (reader == Reader::displace_vertex ? pass.facts.displace_vertex
                        : reader == Reader::height_test   ? pass.facts.height_test
@@ -64,34 +78,43 @@ void PassRecord::read(Reader reader, const PartTag& tag, const Reads& reads, con
 }
 
 void PassRecord::observe(HostedMachine& machine) {
-    culls_ = machine.pipeline.registers().back_face_culling;
+    registers_ = &machine.pipeline.registers();
     machine.pipeline.pass_or_tessellate.decided.bind(decisions_);
     machine.pipeline.pass_or_tessellate.finished.bind(finishes_);
 }
 
 void PassRecord::Decisions::write(const datapath::TrianglePass& decided) {
-    Facts& facts = record_.pass(decided.number).facts;
-    facts.tested = true;
+    RecordedPass& pass = record_.pass(decided.number);
+    pass.triangle = hash_of(decided.triangle);
+    pass.facts.tested = true;
     if (decided.split == 0 && decided.new_vertices == 0)
         return;  // it is finished
-    facts.way = Way::tessellation;
-    facts.children = 1 + static_cast<unsigned>(__builtin_popcount(decided.split));
+    pass.facts.way = Way::tessellation;
+    const datapath::Registers& registers = *record_.registers_;
+    datapath::Saturations ignored;
+    tessellate(decided, registers.triangulation, registers.formats, ignored,
+               [&](const datapath::Triangle& child) { pass.children[pass.facts.children++] = hash_of(child); });
 }
 
 void PassRecord::Finished::write(const datapath::Triangle& triangle) {
     const auto& v = triangle.vertices;
-    const bool dropped = record_.culls_ && datapath::faces_away(v[0].screen, v[1].screen, v[2].screen);
-    record_.finished_.push_back(dropped ? Way::dropped : Way::lighting);
+    const bool dropped =
+        record_.registers_->back_face_culling && datapath::faces_away(v[0].screen, v[1].screen, v[2].screen);
+    record_.finished_.push_back({dropped ? Way::dropped : Way::lighting, hash_of(triangle)});
 }
 
-std::vector<RecordedPass> PassRecord::passes() {
-    std::size_t finished = 0;
-    for (RecordedPass& pass : passes_)
-        if (pass.facts.children == 0)
-            pass.facts.way = finished_.at(finished++);
-    if (finished != finished_.size())
-        throw InputError("recorded triangles: other passes finish than are left");
-    return std::move(passes_);
+std::vector<RecordedPass> PassRecord::take_passes() {
+    const auto ends = [](const RecordedPass& pass) { return pass.facts.children == 0; };
+    if (std::count_if(passes_.begin(), passes_.end(), ends) != static_cast<std::ptrdiff_t>(finished_.size()))
+        throw std::logic_error(std::to_string(finished_.size()) + " triangles finished, in another number of passes");
+    auto finished = finished_.begin();
+    for (RecordedPass& pass : passes_) {
+        if (!ends(pass))
+            continue;
+        pass.facts.way = finished->way;
+        pass.triangle = finished++->triangle;
+    }
+    return std::exchange(passes_, {});
 }
 
 std::unique_ptr<DisplaceVertex> RecordedUnits::displace_vertex(Name name, const UnitContext& context) {

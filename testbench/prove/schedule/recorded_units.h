@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -12,10 +13,11 @@
 
 namespace tessera::schedule {
 
-/// A pass of a triangle through a clocked machine, in the order in which Get Triangle begins them.
+/// A pass of a triangle through a clocked machine: about 1 KB.
 struct RecordedPass {
     Facts facts;
-    std::uint32_t base = 0;  ///< the base triangle that it descends from
+    std::uint64_t triangle = 0;               ///< hash of its corners
+    std::array<std::uint64_t, 4> children{};  ///< of each child, in the order in which Tessellation sends them
 
     bool is_base() const { return (facts.parts & vertex_parts) != 0; }
 };
@@ -25,14 +27,15 @@ class PassRecord {
   public:
     enum class Reader { displace_vertex, height_test, normal_test };
 
-    /// Makes an item of that unit known, and the banks of its reads. memories: by the unit's ports.
+    /// Records an item of that unit and the banks that it reads. memories: those that the unit reads, in the order of its
+    /// ports.
     void read(Reader reader, const PartTag& tag, const Reads& reads, const std::vector<BankOfEntry>& memories);
 
     /// Records the decisions from now on.
     void observe(HostedMachine& machine);
 
-    /// After the run.
-    std::vector<RecordedPass> passes();
+    /// After the run: in the order in which Get Triangle began them. Leaves the record empty.
+    std::vector<RecordedPass> take_passes();
 
   private:
     RecordedPass& pass(std::uint32_t number);
@@ -49,19 +52,24 @@ class PassRecord {
     };
 
     std::vector<RecordedPass> passes_;
-    std::vector<Way> finished_;  // in order
-    bool culls_ = false;
+    struct End {
+        Way way = Way::dropped;
+        std::uint64_t triangle = 0;
+    };
+    std::vector<End> finished_;  // in order
+    const datapath::Registers* registers_ = nullptr;
     Decisions decisions_{*this};
     Finished finishes_{*this};
 };
 
-/// Makes units of modules/ that record what they read, for each machine.
+/// Makes units that record their reads, separately for each machine.
 class RecordedUnits : public UnitFactory {
   public:
     std::unique_ptr<DisplaceVertex> displace_vertex(Name name, const UnitContext& context) override;
     std::unique_ptr<HeightTestUnit> height_test(Name name, const UnitContext& context) override;
     std::unique_ptr<NormalTest> normal_test(Name name, const UnitContext& context, Parts takes) override;
 
+    /// The record of the machine with this clock.
     PassRecord& of(const CycleScheduler& clock) { return records_[&clock]; }
 
   private:

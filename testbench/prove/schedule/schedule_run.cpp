@@ -6,10 +6,10 @@
 #include <array>
 #include <cstdint>
 #include <exception>
-#include <map>
 #include <memory>
 #include <numeric>
 #include <sstream>
+#include <stdexcept>
 #include <vector>
 
 #include "testbench/common/child_process.h"
@@ -24,6 +24,7 @@ namespace tessera {
 namespace {
 
 constexpr std::uint64_t most_triangles = 20'000'000, most_cycles_without_progress = 1'000'000;
+constexpr unsigned most_seconds = 600;
 
 /// Digests of the cycles in which items entered and left a unit.
 class ItemTimes : public ActivityObserver, public schedule::ItemObserver {
@@ -33,6 +34,7 @@ class ItemTimes : public ActivityObserver, public schedule::ItemObserver {
         std::uint64_t& digest = came ? came_ : left_;
         digest = mix_hash(digest, cycle);
     }
+    bool any() const { return came_ != 0; }
     std::string text() const { return fmt::format("{:016x} {:016x}", came_, left_); }
 
   private:
@@ -107,6 +109,8 @@ class ClockedText {
   private:
     static std::string unit_text(const Unit& unit, const ItemTimes& times) {
         const Activity& activity = unit.activity();
+        if (times.any() != (activity.items_in() > 0))
+            throw std::logic_error(fmt::format("{}: items were not observed", unit.name()));
         std::string text =
             fmt::format("{}: items {} in cycles {}, at most {}, item cycles {}", unit.name(), activity.items_in(),
                         times.text(), activity.high_water_mark(), activity.item_cycles());
@@ -136,8 +140,8 @@ class ScheduledText {
 
     /// Returns the first pass that the schedule begins in another order; empty: none.
     std::string run(const std::vector<schedule::RecordedPass>& passes) {
-        std::vector<std::uint32_t> kept;  // the base triangle of each child, by place
-        schedule_.send(machine_.host.total(), 0);
+        std::vector<std::uint64_t> kept;  // the hash of each child, by place
+        schedule_.send(machine_.host.total());
         for (std::size_t number = 0;; ++number) {
             const schedule::Source::Next& next = schedule_.next();
             if (!next.any)
@@ -145,12 +149,12 @@ class ScheduledText {
             if (number == passes.size())
                 return fmt::format("pass {} is scheduled, and was not begun", number);
             const schedule::RecordedPass& pass = passes[number];
-            if (next.from_host != pass.is_base() || (!next.from_host && kept.at(next.place) != pass.base))
-                return fmt::format("pass {}, of base triangle {}: the schedule begins another", number, pass.base);
+            if (next.from_host != pass.is_base() || (!next.from_host && kept.at(next.place) != pass.triangle))
+                return fmt::format("pass {}: the schedule begins another triangle", number);
             schedule::Facts facts = pass.facts;
             for (unsigned child = 0; child < facts.children; ++child) {
                 facts.place[child] = static_cast<std::uint32_t>(kept.size());
-                kept.push_back(pass.base);
+                kept.push_back(pass.children[child]);
             }
             schedule_.pass(facts);
         }
@@ -202,8 +206,22 @@ class ScheduledText {
     std::array<ItemTimes, schedule::units> times_;
 };
 
+/// Whether the order of a design's results follows from the order of its items (README.md).
+bool has_schedule(const MachineSetup& setup) {
+    const Design& design = setup.design;
+    const Timing& timing = design.timing;
+    const bool cached = timing.displacement_map.cache.bytes > 0 || timing.normal_map.cache.bytes > 0 ||
+                        (timing.*kind_of(setup.registers.formats.height_test).table_timing).cache.bytes > 0;
+    const bool shared = design.tests_units > 1 || (setup.registers.formats.codes &&
+                                                   !displacement_map_has_two_sides(design, setup.registers.formats));
+    return design.work == Work::triangle && design.test_order == TestOrder::parallel && design.queue.capacity == 0 &&
+           !cached && !shared;
+}
+
 std::string difference(const Job& job, const BaseMesh& mesh, const HeightMap& map) {
     const MachineSetup setup = make_setup(job, mesh, map);
+    if (!has_schedule(setup))
+        return "this design has no schedule";
     schedule::RecordedUnits units;
     Simulation simulation(setup, most_triangles, most_cycles_without_progress, &units);
     std::vector<std::unique_ptr<ClockedText>> clocked;
@@ -213,28 +231,33 @@ std::string difference(const Job& job, const BaseMesh& mesh, const HeightMap& ma
     }
     if (std::string stuck = simulation.run(); !stuck.empty())
         return stuck;
+    std::size_t passes = 0;
     for (std::size_t k = 0; k < simulation.machines.size(); ++k) {
         HostedMachine& machine = *simulation.machines[k];
+        const std::vector<schedule::RecordedPass> recorded = units.of(machine.pipeline.clock).take_passes();
+        passes += recorded.size();
         ScheduledText scheduled(machine, setup.design);
-        if (std::string other = scheduled.run(units.of(machine.pipeline.clock).passes()); !other.empty())
+        if (std::string other = scheduled.run(recorded); !other.empty())
             return other;
         if (std::string other = first_difference(clocked[k]->text(), scheduled.text(simulation.cycles()));
             !other.empty())
             return other;
     }
-    return {};
+    return passes > 0 ? "" : "no pass was recorded";
 }
 
 }  // namespace
 
 std::string schedule_difference(const Job& job, const BaseMesh& mesh, const HeightMap& map) {
-    const ChildEnd end = run_in_child([&]() -> std::string {
-        try {
-            return difference(job, mesh, map);
-        } catch (const std::exception& error) {
-            return error.what();
-        }
-    });
+    const ChildEnd end = run_in_child(
+        [&]() -> std::string {
+            try {
+                return difference(job, mesh, map);
+            } catch (const std::exception& error) {
+                return error.what();
+            }
+        },
+        most_seconds);
     return end.told + end.failure;
 }
 

@@ -48,15 +48,14 @@ RandomCase make_scheduled_case(std::uint64_t seed) {
     Job::Hardware& hardware = made.job.hardware;
     hardware.work = Work::triangle;
     hardware.test_order = TestOrder::parallel;
-    hardware.edge_lanes = hardware.normal_tests = 1;
+    hardware.edge_lanes = hardware.normal_tests = hardware.tests_units = 1;
+    hardware.one_texel_from_map = false;
     hardware.queue.capacity = 0;
     hardware.transform_pipelines = random.one_of<unsigned>({1, 1, 2, 3, 7});
     hardware.queue.watermark = random.one_of<std::size_t>({1, 1, 2, 5, 30, 1000});
     hardware.machines = random.chance(10) ? 2 : 1;
     made.job.tests.rank_view = RankView::none;
     choose_timing(random, made.job.timing);
-    hardware.tests_units = 1;
-    hardware.one_texel_from_map = false;
     return made;
 }
 

@@ -5,8 +5,8 @@
 
 namespace tessera {
 
-/// A random case (random_case.h) turned into a design that has a schedule, with figures of every unit and memory
-/// derived from the seed.
+/// A random case (random_case.h) turned into a design that has a schedule, with the timing of every unit and memory
+/// drawn from the seed.
 RandomCase make_scheduled_case(std::uint64_t seed);
 
 }  // namespace tessera

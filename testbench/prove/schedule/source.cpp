@@ -11,10 +11,10 @@ Source::Source(const SourcePlan& plan)
       from_tessellation_(plan.from_tessellation),
       begins_(plan.from_triangle_queue.depth) {}
 
-void Source::send(std::uint64_t triangles, Cycle cycle) {
+void Source::send(std::uint64_t triangles) {
+    host_triangles_ = triangles;
     if (triangles > 0)
-        host_taken_ = from_host_.take(std::max(host_taken_, cycle));
-    host_triangles_ += triangles;
+        host_taken_ = from_host_.take(0);
 }
 
 Cycle Source::offer(Cycle cycle, std::uint32_t place) {
@@ -58,7 +58,7 @@ void Source::depart(std::uint64_t n) {
     departs_.add(at_once ? offer : moment(taken, by_get_triangle));
     states_.until(cycle_of(pushes_[n].when), State::starved);
     states_.until(cycle_of(offer), State::busy);
-    states_.until(taken, State::blocked, plan_.get_triangle);
+    states_.until(taken, State::blocked, get_triangle);
 }
 
 /// The place of the triangle that leaves in this pop. All pushes before its start must be known.

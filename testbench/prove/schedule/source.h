@@ -33,8 +33,8 @@ class Source {
   public:
     explicit Source(const SourcePlan& plan);
 
-    /// The host offers this many more triangles, from this cycle on.
-    void send(std::uint64_t triangles, Cycle cycle);
+    /// The host offers this many triangles, from cycle 0 on. Call once.
+    void send(std::uint64_t triangles);
     /// Tessellation offers the queue a child, kept in `place`. Returns the cycle in which it is accepted.
     Cycle offer(Cycle cycle, std::uint32_t place);
 

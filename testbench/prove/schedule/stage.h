@@ -56,7 +56,6 @@ class Pipeline {
     void depart(Cycle cycle) { departs_.add(cycle); }
     Cycle last_depart() const { return departs_[departs_.count() - 1]; }
     unsigned latency() const { return plan_.latency; }
-    unsigned stages() const { return plan_.stages; }
 
   private:
     PipelinePlan plan_;

@@ -24,13 +24,12 @@ struct TablePlan {
 /// its last address; answer[n] = max(answer[n - 1], its last address + latency).
 class Ports {
   public:
-    /// most: the largest number of requests at a time.
-    Ports(const TablePlan& plan, std::size_t most)
+    explicit Ports(const TablePlan& plan)
         : plan_(plan),
           free_(std::size_t{plan.banks} * plan.ports),
           bank_slots_(plan.banks),
           window_(plan.window),
-          level_(most) {}
+          level_(plan.under_way) {}
 
     /// The first cycle in which the ports allow a request for `count` entries in these banks.
     Cycle ready(const std::uint8_t* banks, unsigned count) {
@@ -108,7 +107,7 @@ class Ports {
 /// A memory with one table, read by one unit: served[n] = max(taken[n], served[n - 1], its ports free).
 class Table {
   public:
-    explicit Table(const TablePlan& plan) : input_(plan.input), ports_(plan, plan.under_way) {}
+    explicit Table(const TablePlan& plan) : input_(plan.input), ports_(plan) {}
 
     /// Requests `count` entries in these banks. Returns the cycle in which the last one arrives.
     Cycle request(Cycle offer, const std::uint8_t* banks, unsigned count) {

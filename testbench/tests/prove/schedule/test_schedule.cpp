@@ -72,6 +72,18 @@ const CaseTable designs(
 
 }  // namespace
 
+TEST_CASE("designs without a schedule are told apart") {
+    for (const char* const settings :
+         {"hardware.design=modern", "hardware.test_order=cheap_first", "hardware.queue_capacity=64",
+          "hardware.tests_units=3", "hardware.one_texel_from_map=true", "timing.displacement_map_cache_bytes=4096",
+          "timing.normal_map_cache_bytes=4096", "timing.summed_height_table_cache_bytes=4096"}) {
+        INFO(settings);
+        const Job job = with_settings({}, settings);
+        const Inputs inputs = load_inputs(job);
+        CHECK(schedule_difference(inputs.resolved.job, inputs.mesh, inputs.map) == "this design has no schedule");
+    }
+}
+
 TEST_CASE("a difference between run and schedule is reported with its line") {
     CHECK(first_difference("a\nb\n", "a\nb\n").empty());
     CHECK(first_difference("a\nb\n", "a\nc\n") == "clocked:  b\nschedule: c");

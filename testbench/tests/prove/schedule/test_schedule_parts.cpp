@@ -186,7 +186,7 @@ SourcePlan queue_of(bool newest_first, std::uint64_t watermark = 1) {
 
 TEST_CASE("schedule: the queue's triangles have priority over the host's") {
     Source source(queue_of(false));
-    source.send(3, 0);
+    source.send(3);
     Source::Next next = source.next(0);
     CHECK(next.from_host);
     CHECK(next.begin == 0);
@@ -218,7 +218,7 @@ TEST_CASE("schedule: below the watermark the host's triangles do not wait for th
         SourcePlan plan = queue_of(false, row.watermark);
         plan.queue.latency = 10;
         Source source(plan);
-        source.send(2, 0);
+        source.send(2);
         source.next(0);
         source.offer(3, 30);
         const Source::Next next = source.next(row.free);
@@ -229,7 +229,7 @@ TEST_CASE("schedule: below the watermark the host's triangles do not wait for th
 
 TEST_CASE("schedule: last in first out, the newest triangle present leaves the store") {
     Source source(queue_of(true));
-    source.send(1, 0);
+    source.send(1);
     source.next(0);
     source.offer(4, 40);  // leaves the store in 4
     source.offer(5, 50);  // in 5
@@ -248,7 +248,7 @@ TEST_CASE("schedule: in each cycle the queue outputs before it takes a triangle 
     SourcePlan plan = queue_of(true);
     plan.queue.interval = 2;
     Source source(plan);
-    source.send(1, 0);
+    source.send(1);
     source.next(0);
     for (std::uint32_t place = 1; place <= 4; ++place)
         source.offer(2 * place, place);
@@ -282,7 +282,7 @@ TEST_CASE("schedule: the queue's levels and item times") {
     Source source(queue_of(false));
     Times times;
     source.observe(&times);
-    source.send(1, 0);
+    source.send(1);
     source.next(0);
     source.offer(4, 1);
     source.offer(5, 2);
