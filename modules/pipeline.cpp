@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "modules/datapath/bilinear.h"
 #include "modules/datapath/pack_triangle.h"
 #include "modules/timing/design_check.h"
 
@@ -94,12 +95,31 @@ Pipeline::Pipeline(const sc_core::sc_module_name& name, const datapath::Register
         return new TessellationTests(unit_name, {clock, registers, design}, units, static_cast<unsigned>(number));
     });
     attach();
+    count_table_areas(design.timing);
     wire(units);
     see_where_ports_lead();
     SC_HAS_PROCESS(Pipeline);
     SC_METHOD(see_whether_drained);
     dont_initialize();
     sensitive << clock.quiet() << triangle_queue.emptied() << frame_ended_;
+}
+
+/// A map's request reads one texel, or four with a bilinear filter; a rectangle's its corners: where it wraps on one axis
+/// six, on both nine.
+void Pipeline::count_table_areas(const Timing& timing) {
+    const datapath::Registers& r = registers_;
+    const datapath::Formats& f = r.formats;
+    const HeightTestKind& height = kind_of(f.height_test);
+    const unsigned texels = datapath::map_entry_count(f);
+    const auto across = [](datapath::AddressMode mode) { return mode == datapath::AddressMode::repeat ? 3u : 2u; };
+    const unsigned corners = across(r.map.address_u) * across(r.map.address_v);
+    displacement_map.count_area(r.displacement_map, timing.displacement_map, f.displacement.bits, texels);
+    if (displacement_map_for_tests != nullptr)
+        displacement_map_for_tests->count_area(r.displacement_map, timing.displacement_map, f.displacement.bits,
+                                               height.codes);
+    normal_map.count_area(r.normal_map, timing.normal_map, 3 * f.normal.bits, texels);
+    height_table.count_area(r.height_table, timing.*height.table_timing, datapath::height_entry_bits(f),
+                            height.rectangles ? corners : 1);
 }
 
 std::unique_ptr<TableCache> Pipeline::make_cache(const char* name, const datapath::TableLayout& layout,

@@ -5,6 +5,7 @@
 #include "modules/datapath/intermediate.h"
 #include "modules/datapath/map_address.h"
 #include "modules/datapath/map_entry.h"
+#include "modules/datapath/multiplications.h"
 
 namespace tessera::datapath {
 
@@ -131,6 +132,16 @@ constexpr Direction map_normal(const TexCoord& t, const std::uint64_t* entries, 
         return static_cast<std::int32_t>(interpolate(texels, weights, 0, formats));
     };
     return {component(x), component(y), component(z)};
+}
+
+/// Of one value; none without a bilinear filter.
+inline Multiplications interpolate_multiplications(const Formats& f) {
+    const BilinearWidths w{f};
+    const int weight = weight_bits(f);
+    Multiplications all;
+    if (map_entry_count(f) > 1)
+        all.add(2, w.columns.bits, weight).add(1, w.rows.bits, weight);
+    return all;
 }
 
 }  // namespace tessera::datapath

@@ -2,6 +2,7 @@
 #include <array>
 #include <cstdint>
 
+#include "modules/datapath/multiplications.h"
 #include "modules/datapath/normalise.h"
 
 namespace tessera::datapath {
@@ -50,6 +51,17 @@ constexpr Direction bump(const Direction& n, const Direction& t, int handedness,
         return round_shift(map_normal.x * tangent + map_normal.y * bitangent + map_normal.z * normal, down);
     };
     return normalise(combine(t.x, bx, n.x), combine(t.y, by, n.y), combine(t.z, bz, n.z), formats, saturations);
+}
+
+/// With those of its normalise.
+inline Multiplications bump_multiplications(const Formats& f) {
+    const BumpWidths w{f};
+    const int n = f.normal.bits;
+    return Multiplications()
+        .add(6, n, n)
+        .add(6, n, n)
+        .add(3, n, w.bitangent.bits)
+        .add(normalise_multiplications(f, w.combined.bits));
 }
 
 }  // namespace tessera::datapath

@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "modules/datapath/intermediate.h"
+#include "modules/datapath/multiplications.h"
 #include "modules/datapath/vertex.h"
 
 namespace tessera::datapath {
@@ -24,6 +25,11 @@ constexpr bool faces_away(const ScreenPosition& a, const ScreenPosition& b, cons
     const std::int64_t abx = std::int64_t{b.x} - a.x, aby = std::int64_t{b.y} - a.y;
     const std::int64_t acx = std::int64_t{c.x} - a.x, acy = std::int64_t{c.y} - a.y;
     return Product{abx} * acy <= Product{aby} * acx;
+}
+
+inline Multiplications faces_away_multiplications(const Formats& f) {
+    const int difference = CullWidths{f}.difference.bits;
+    return Multiplications().add(2, difference, difference);
 }
 
 }  // namespace tessera::datapath

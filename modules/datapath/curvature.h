@@ -7,6 +7,7 @@
 #include "modules/datapath/intermediate.h"
 #include "modules/datapath/map_address.h"
 #include "modules/datapath/map_entry.h"
+#include "modules/datapath/multiplications.h"
 #include "modules/datapath/parameters.h"
 #include "modules/datapath/vertex.h"
 
@@ -174,6 +175,12 @@ constexpr std::uint64_t curvature_of_entries(const TexCoord& i, const TexCoord& 
 /// CT: the measure is above the threshold.
 constexpr bool curvature_test(std::uint64_t measure, const TestParameters& parameters) {
     return measure > parameters.curvature_threshold;
+}
+
+inline Multiplications curvature_measure_multiplications(const Formats& f) {
+    const CurvatureWidths w{f};
+    constexpr int coefficient = 8;
+    return Multiplications().add(3, w.step.bits, w.step.bits).add(3, coefficient, w.product.bits);
 }
 
 }  // namespace tessera::datapath

@@ -5,6 +5,7 @@
 #include "modules/datapath/bilinear.h"
 #include "modules/datapath/format.h"
 #include "modules/datapath/intermediate.h"
+#include "modules/datapath/multiplications.h"
 #include "modules/datapath/parameters.h"
 #include "modules/datapath/vertex.h"
 
@@ -36,6 +37,13 @@ constexpr Position displace(const Position& p, const Direction& n, std::uint32_t
                                                   formats.position, saturations.displaced_position));
     };
     return {along(p.x, n.x), along(p.y, n.y), along(p.z, n.z)};
+}
+
+inline Multiplications displace_multiplications(const Formats& f) {
+    const DisplaceWidths w{f};
+    return Multiplications()
+        .add(1, f.position.bits, f.displacement.bits + code_fraction(f))
+        .add(3, w.height.bits, f.normal.bits);
 }
 
 }  // namespace tessera::datapath

@@ -5,6 +5,7 @@
 
 #include "modules/datapath/intermediate.h"
 #include "modules/datapath/map_address.h"
+#include "modules/datapath/multiplications.h"
 #include "modules/datapath/parameters.h"
 #include "modules/datapath/rectangle.h"
 #include "modules/datapath/vertex.h"
@@ -131,6 +132,17 @@ constexpr bool generation_test(std::uint8_t generation_i, std::uint8_t generatio
 /// split(i, j) = (NT or SHT or HT) and VT and TCT and GT (paper 2.6, plus HT and GT). `tests`: TestBits.
 constexpr bool split_decision(std::uint8_t tests) {
     return (tests & requesting_tests) != 0 && (tests & gating_tests) == gating_tests;
+}
+
+inline Multiplications highlight_test_multiplications(const Formats& f) {
+    return Multiplications().add(9, f.normal.bits, f.normal.bits);
+}
+
+/// With the area threshold; the sum threshold needs none.
+inline Multiplications summed_height_limit_multiplications(const Formats& f) {
+    const RectangleWidths r{f};
+    constexpr int threshold = 19;  // at most 2^18
+    return Multiplications().add(1, r.width.bits, r.height.bits).add(1, threshold, EdgeTestWidths{f}.area.bits);
 }
 
 }  // namespace tessera::datapath

@@ -4,6 +4,7 @@
 
 #include "modules/datapath/format.h"
 #include "modules/datapath/intermediate.h"
+#include "modules/datapath/multiplications.h"
 #include "modules/datapath/parameters.h"
 #include "modules/datapath/vertex.h"
 
@@ -33,6 +34,11 @@ constexpr std::uint8_t light(const Direction& screen_normal, const LightParamete
         parameters.ambient + (((256 - parameters.ambient) * cosine) >> formats.normal.fraction);
     constexpr Format eight_bits = Format::make_unsigned(8, 8);
     return static_cast<std::uint8_t>(saturate(intensity, eight_bits, saturations.intensity));
+}
+
+inline Multiplications light_multiplications(const Formats& f) {
+    constexpr int ambient = 9;
+    return Multiplications().add(3, f.normal.bits, f.normal.bits).add(1, LightWidths{f}.cosine.bits, ambient);
 }
 
 }  // namespace tessera::datapath

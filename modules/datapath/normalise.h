@@ -5,6 +5,7 @@
 
 #include "modules/datapath/format.h"
 #include "modules/datapath/intermediate.h"
+#include "modules/datapath/multiplications.h"
 #include "modules/datapath/reciprocal.h"
 #include "modules/datapath/vertex.h"
 
@@ -98,6 +99,17 @@ constexpr Direction normalise(std::int64_t x, std::int64_t y, std::int64_t z, co
 }
 constexpr Direction normalise(const Direction& v, const Formats& formats, Saturations& saturations) {
     return normalise(v.x, v.y, v.z, formats, saturations);
+}
+
+inline Multiplications normalise_multiplications(const Formats& f, int component_bits) {
+    const ReciprocalRootWidths w{f};
+    const int square = w.square.bits - 32, correction = 32;
+    return Multiplications()
+        .add(3, component_bits, component_bits)
+        .add(2, w.root.bits, w.root.bits)
+        .add(2, w.mantissa.bits, square)
+        .add(2, w.root.bits, correction)
+        .add(3, w.root.bits, component_bits);
 }
 
 }  // namespace tessera::datapath

@@ -4,6 +4,7 @@
 
 #include "modules/datapath/format.h"
 #include "modules/datapath/intermediate.h"
+#include "modules/datapath/multiplications.h"
 #include "modules/datapath/parameters.h"
 #include "modules/datapath/rank_view.h"
 #include "modules/datapath/reciprocal.h"
@@ -104,6 +105,20 @@ constexpr Direction transform_normal(const Direction& n, const TransformParamete
             saturate(round_shift(sum, formats.normal.fraction), formats.normal, saturations.screen_normal));
     };
     return {row(parameters.normal_rows[0]), row(parameters.normal_rows[1]), row(parameters.normal_rows[2])};
+}
+
+inline Multiplications transform_multiplications(const Formats& f) {
+    const TransformWidths w{f};
+    const ReciprocalWidths r{f};
+    return Multiplications()
+        .add(9, matrix_entry_bits, f.position.bits)
+        .add(2, r.mantissa.bits, r.reciprocal.bits)
+        .add(2, r.reciprocal.bits, r.correction.bits)
+        .add(2, w.numerator.bits, w.inverse.bits);
+}
+
+inline Multiplications transform_normal_multiplications(const Formats& f) {
+    return Multiplications().add(9, f.normal.bits, f.normal.bits);
 }
 
 }  // namespace tessera::datapath

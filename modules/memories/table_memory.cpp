@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "modules/memories/line_cache.h"
 #include "modules/stage/signals.h"
 
 namespace tessera {
@@ -23,6 +24,19 @@ TableMemory::TableMemory(const sc_core::sc_module_name& name, CycleScheduler& cl
       storage_(first_side.storage_),
       ports_(timing, layout),
       channel_(nullptr) {}
+
+void TableMemory::count_area(const datapath::TableLayout& layout, const MemoryTiming& timing, int entry_bits,
+                             unsigned entries_read) {
+    const std::uint64_t all = std::uint64_t{layout.rows} * layout.columns;
+    const std::uint64_t entries =
+        timing.cache.bytes > 0 ? CacheShape(timing.cache, layout).bytes() / layout.entry_bytes : all;
+    std::uint64_t address_bits = 1;
+    while (std::uint64_t{1} << address_bits < all)
+        ++address_bits;
+    area_.register_bits = (timing.buffer + timing.window) * entries_read * address_bits;
+    area_.memory_bits = timing.ports * entries * static_cast<std::uint64_t>(entry_bits);
+    area_.ports = std::uint64_t{timing.ports} * timing.banks;
+}
 
 void TableMemory::read(MemoryRequest& request) {
     access(*storage_, request, false);

@@ -31,6 +31,10 @@ class TableMemory : public MemoryServer {
     TableMemory(const sc_core::sc_module_name& name, CycleScheduler& clock, const TableMemory& first_side,
                 const datapath::TableLayout& layout, const MemoryTiming& timing, const StallParameters& stalls);
 
+    /// Counts the memory's area: the bits of an entry, and the most entries that a request reads.
+    void count_area(const datapath::TableLayout& layout, const MemoryTiming& timing, int entry_bits,
+                    unsigned entries_read);
+
     /// Sets the table's columns between runs. Its base, entry size and the memory's capacity do not change.
     void lay_out(std::uint32_t columns) { ports_.lay_out(columns); }
 

@@ -44,6 +44,10 @@ class Stage : public Unit {
                      Parts only);
     void reads_through(MemoryPort& port, unsigned most_requests);
     void may_wait() { may_wait_ = true; }
+    /// For the area, besides the input buffer and the items in the register stages: an item's multiplications, and bits
+    /// kept with it in each stage.
+    void multiplies(const datapath::Multiplications& multiplications);
+    void keeps(std::uint64_t bits);
 
     /// For a unit that calls may_wait() in its constructor. Returns false if the item waits for another input; in
     /// functional mode that is an error.

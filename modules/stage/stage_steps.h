@@ -72,7 +72,11 @@ Stage<In, Out>::Stage(const sc_core::sc_module_name& name, const UnitContext& co
     : Unit(name, context.clock),
       timing_(timing),
       latency_(clock_.period() * timing.latency),
-      machinery_(std::make_unique<Machinery>(timing, servers, memory_latency)) {}
+      machinery_(std::make_unique<Machinery>(timing, servers, memory_latency)) {
+    const ItemWidths widths(context);
+    area_.register_bits = timing.buffer * widths.of<In>();
+    keeps(std::max(widths.of<In>(), widths.of<Out>()));
+}
 
 template <class In, class Out>
 Stage<In, Out>::~Stage() = default;
@@ -107,6 +111,16 @@ template <class In, class Out>
 void Stage<In, Out>::reads_through(MemoryPort& port, unsigned most_requests) {
     machinery_->ports[reads_tables() ? 1 : 0] = &port;
     port.clocked_by(clock_, *this, machinery_->pipeline.capacity() * most_requests);
+}
+
+template <class In, class Out>
+void Stage<In, Out>::multiplies(const datapath::Multiplications& multiplications) {
+    area_.multiply(multiplications, timing_.interval, machinery_->servers);
+}
+
+template <class In, class Out>
+void Stage<In, Out>::keeps(std::uint64_t bits) {
+    area_.register_bits += machinery_->pipeline.capacity() * bits;
 }
 
 template <class In, class Out>

@@ -5,6 +5,7 @@
 #include <systemc>
 
 #include "modules/sockets/parts.h"
+#include "modules/stage/area.h"
 #include "modules/timing/activity.h"
 #include "modules/timing/cycle_scheduler.h"
 #include "modules/timing/design.h"
@@ -25,6 +26,8 @@ class Unit : public CycleProcess, public sc_core::sc_module {
     /// Cycles that the unit's work occupies at its initiation interval or, for a memory, at its ports.
     virtual std::uint64_t occupied_cycles() const = 0;
 
+    const Area& area() const { return area_; }
+
     bool idle() const { return activity_.level() == 0; }
 
     /// Declares the unit's signals, or shows their values at the end of a cycle (modules/stage/signals.h). For every
@@ -42,6 +45,7 @@ class Unit : public CycleProcess, public sc_core::sc_module {
 
     CycleScheduler& clock_;
     Activity activity_;
+    Area area_;  // set when the unit is built
 };
 
 /// occupied_cycles() of a unit that holds one item at a time and sends it on in parts: the first a latency after its

@@ -12,6 +12,8 @@ DecidingUnit::DecidingUnit(const sc_core::sc_module_name& name, const UnitContex
       timing_(context.timing().pass_or_tessellate),
       latency_(clock_.period() * timing_.latency) {
     to_lighting.clocked_by(context, *this);
+    if (registers_.back_face_culling)
+        area_.multiply(datapath::faces_away_multiplications(registers_.formats));
 }
 
 DecidingUnit::~DecidingUnit() = default;

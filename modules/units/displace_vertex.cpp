@@ -20,6 +20,13 @@ DisplaceVertex::DisplaceVertex(const sc_core::sc_module_name& name, const UnitCo
         normal_map.emplace("normal_map", context.registers.normal_map.entry_bytes, context.design.direct_memory);
         reads_through(*normal_map, 1);
     }
+    const datapath::Formats& f = registers_.formats;
+    const datapath::Multiplications interpolates = interpolate_multiplications(f);
+    const auto entries = map_entry_count(f);
+    const datapath::Multiplications directs =
+        f.families ? bump_multiplications(f).add(interpolates, 3) : normalise_multiplications(f, f.normal.bits);
+    multiplies(displace_multiplications(f).add(interpolates).add(directs));
+    keeps(entries * static_cast<unsigned>(f.displacement.bits + (f.families ? 3 * f.normal.bits : 0)));
 }
 
 void DisplaceVertex::reads(const BasePoint& point, Reads& reads) const {

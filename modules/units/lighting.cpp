@@ -9,6 +9,8 @@ Lighting::Lighting(const sc_core::sc_module_name& name, const UnitContext& conte
     : Stage(name, context, context.timing().lighting), registers_(context.registers) {
     takes_from(context, from_pass_or_tessellate);
     delivers_to(context, to_rasteriser);
+    constexpr unsigned corners = 3;
+    multiplies(datapath::Multiplications().add(light_multiplications(registers_.formats), corners));
 }
 
 LitTriangle Lighting::process(const TriangleToLight& triangle, const Entries&) {

@@ -23,6 +23,11 @@ PassOrTessellate::PassOrTessellate(const sc_core::sc_module_name& name, const Un
         input.clocked_by(clock_, *this, timing_.buffer * 3 / context.design.tests_units, stalls);
     }
     to_tessellation.clocked_by(context, *this);
+    const ItemWidths bits(context);
+    area_.register_bits =
+        from_get_triangle.depth() * bits.of<TakenTriangle>() + bits.of<ScreenPoint>() +
+        std::uint64_t{3} * timing_.buffer * bits.of<TestedEdge>() +
+        (timing_.buffer + pipeline_.capacity()) * (static_cast<unsigned>(bits.tag) + bits.of<DecidedTriangle>());
 }
 
 void PassOrTessellate::end_of_elaboration() {

@@ -15,6 +15,7 @@ Transform::Transform(const sc_core::sc_module_name& name, const UnitContext& con
     const auto corner = +[](const ScreenPoint& point) { return ScreenCorner{point.tag, point.screen}; };
     for (StreamOutput<ScreenCorner>& output : to_view_test)
         delivers_to(context, output, corner, vertex_parts);
+    multiplies(transform_multiplications(registers_.formats).add(transform_normal_multiplications(registers_.formats)));
 }
 
 ScreenPoint Transform::process(const DisplacedPoint& point, const Entries&) {

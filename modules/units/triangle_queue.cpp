@@ -33,6 +33,9 @@ TriangleQueue::TriangleQueue(const sc_core::sc_module_name& name, const UnitCont
     off_chip_memory.clocked_by(clock_, *this, context.timing().off_chip_memory.buffer + 4, 1);
     SC_HAS_PROCESS(TriangleQueue);
     SC_THREAD(send_waiting);
+    const std::uint64_t triangle = ItemWidths(context).of<datapath::Triangle>();
+    area_.register_bits = timing_.buffer * triangle;
+    area_.memory_bits = design_.capacity * triangle;
 }
 
 void TriangleQueue::b_transport(datapath::Triangle& triangle, sc_core::sc_time& delay) {

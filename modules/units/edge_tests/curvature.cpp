@@ -4,6 +4,11 @@
 
 namespace tessera {
 
+CurvatureTest::CurvatureTest(const sc_core::sc_module_name& name, const UnitContext& context)
+    : HeightTestUnit(name, context) {
+    multiplies(curvature_measure_multiplications(registers_.formats));
+}
+
 void CurvatureTest::reads(const HeightOperands& edge, Reads& reads) const {
     if (!registers_.tests.summed_height_test)
         return;

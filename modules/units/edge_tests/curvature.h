@@ -20,7 +20,7 @@ namespace tessera {
 /// Waits for Calculate New U, the Curvature Table and the displacement map; held back by the collector of the tests.
 class CurvatureTest : public HeightTestUnit {
   public:
-    using HeightTestUnit::HeightTestUnit;
+    CurvatureTest(const sc_core::sc_module_name& name, const UnitContext& context);
 
     void trace_signals(Signals& signals) const override;
 

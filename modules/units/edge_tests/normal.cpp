@@ -28,6 +28,17 @@ NormalTest::NormalTest(const sc_core::sc_module_name& name, const UnitContext& c
     delivers_to(context, output, edge_parts);
     reads_through(normal_map, 1);
     may_wait();
+    const datapath::Formats& f = registers_.formats;
+    datapath::Multiplications all;
+    all.add(normalise_multiplications(f, f.normal.bits), 2)
+        .add(bump_multiplications(f))
+        .add(interpolate_multiplications(f), 3);
+    if (registers_.tests.highlight_test)
+        all.add(highlight_test_multiplications(f));
+    multiplies(all);
+    keeps(map_entry_count(f) * 3 * static_cast<unsigned>(f.normal.bits));
+    if (!f.families)  // corners
+        area_.register_bits += static_cast<unsigned>(3 * (1 + 3 * f.normal.bits) + tag_bits(context.design));
 }
 
 bool NormalTest::may_start(const NormalOperands& part) const {

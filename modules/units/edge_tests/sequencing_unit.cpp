@@ -21,6 +21,14 @@ SequencingUnit::SequencingUnit(const sc_core::sc_module_name& name, const UnitCo
       height_first_(registers_.formats.height_test == datapath::HeightTest::rank) {
     add_input(context, from_summed_height_test);
     to_summed_height_test.clocked_by(context, *this);
+    const ItemWidths bits(context);
+    const Timing& t = context.timing();
+    const std::uint64_t lanes = context.design.edge_lanes, normal_tests = context.design.normal_tests;
+    const std::uint64_t operands = bits.of<NormalOperands>() + bits.of<HeightOperands>();
+    area_.register_bits = t.results_buffer * (bits.of<HeightResult>() + normal_tests * bits.of<NormalResult>() +
+                                              lanes * (bits.of<TexCoordResult>() + bits.of<ViewResult>() + operands)) +
+                          normal_tests * bits.of<NormalOperands>() +
+                          t.edges_in_sequence * (operands + bits.of<TestedEdge>());
 }
 
 template <class Item>

@@ -5,6 +5,12 @@
 
 namespace tessera {
 
+SummedHeightTest::SummedHeightTest(const sc_core::sc_module_name& name, const UnitContext& context)
+    : HeightTestUnit(name, context) {
+    if (registers_.tests.summed_height_unit == datapath::SummedHeightUnit::area)
+        multiplies(summed_height_limit_multiplications(registers_.formats));
+}
+
 /// The size of the edge's three rectangles.
 datapath::RectangleSize SummedHeightTest::size(const HeightOperands& edge) const {
     return rectangle_size(edge.t_i, edge.t_j, registers_.map, registers_.formats);

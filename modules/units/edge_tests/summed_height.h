@@ -23,7 +23,7 @@ namespace tessera {
 /// Waits for Calculate New U and the Summed Height Table; held back by the collector of the tests.
 class SummedHeightTest : public HeightTestUnit {
   public:
-    using HeightTestUnit::HeightTestUnit;
+    SummedHeightTest(const sc_core::sc_module_name& name, const UnitContext& context);
 
     void trace_signals(Signals& signals) const override;
 

@@ -21,6 +21,11 @@ FamilyPassOrTessellate::FamilyPassOrTessellate(const sc_core::sc_module_name& na
         input.clocked_by(clock_, *this, 1, stalls);
     }
     to_triangle_queue.clocked_by(context, *this);
+    const ItemWidths bits(context);
+    constexpr std::uint64_t most_edges = 9;
+    area_.register_bits = bits.of<Family>() + context.design.edge_lanes * bits.of<TestedEdge>() +
+                          timing_.buffer * (bits.of<Family>() + most_edges * bits.of<TestedEdge>()) +
+                          lit_.capacity() * (bits.of<TriangleToLight>() + bits.of<datapath::Triangle>());
 }
 
 void FamilyPassOrTessellate::end_of_elaboration() {

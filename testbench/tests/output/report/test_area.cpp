@@ -10,6 +10,14 @@
 #include <utility>
 #include <vector>
 
+#include "modules/datapath/bilinear.h"
+#include "modules/datapath/bump.h"
+#include "modules/datapath/cull.h"
+#include "modules/datapath/displace.h"
+#include "modules/datapath/edge_tests.h"
+#include "modules/datapath/light.h"
+#include "modules/datapath/normalise.h"
+#include "modules/datapath/transform.h"
 #include "testbench/tests/support/case_table.h"
 #include "testbench/tests/support/job_settings.h"
 #include "testbench/tests/support/source_folder.h"
@@ -24,7 +32,8 @@ namespace {
 
 std::map<std::string, UnitArea> area(const std::string& settings = "") {
     const MachineSetup setup = setup_of(with_settings(timed_job(), settings));
-    const std::vector<UnitArea> units = design_area(setup.design, setup.registers);
+    const Pipeline machine(sc_core::sc_gen_unique_name("machine"), setup.registers, setup.design);
+    const std::vector<UnitArea> units = area_of(machine.units());
     std::map<std::string, UnitArea> by_name;
     for (const UnitArea& unit : units)
         by_name[unit.name] = unit;
@@ -48,28 +57,32 @@ unsigned multiplications(const std::string& function) {
 }  // namespace
 
 TEST_CASE("area: the multiplications of each function are those of the datapath's README") {
-    const datapath::Formats formats;
-    const Multiplications m{formats};
-    for (const auto& [function, list] :
-         std::vector<std::pair<std::string, Multiplications::List>>{{"normalise", m.normalise(16)},
-                                                                    {"displace", m.displace()},
-                                                                    {"transform", m.transform()},
-                                                                    {"transform_normal", m.transform_normal()},
-                                                                    {"light", m.light()},
-                                                                    {"faces_away", m.faces_away()},
-                                                                    {"summed_height_limit", m.summed_height_limit()},
-                                                                    {"highlight_test", m.highlight_test()},
-                                                                    {"interpolate", m.interpolate()}}) {
+    const datapath::Formats f;
+    const datapath::Formats bilinear = [] {
+        datapath::Formats formats;
+        formats.filter = datapath::MapFilter::bilinear;
+        return formats;
+    }();
+    for (const auto& [function, list] : std::vector<std::pair<std::string, datapath::Multiplications>>{
+             {"normalise", normalise_multiplications(f, 16)},
+             {"displace", displace_multiplications(f)},
+             {"transform", transform_multiplications(f)},
+             {"transform_normal", transform_normal_multiplications(f)},
+             {"light", light_multiplications(f)},
+             {"faces_away", faces_away_multiplications(f)},
+             {"summed_height_limit", summed_height_limit_multiplications(f)},
+             {"highlight_test", highlight_test_multiplications(f)},
+             {"interpolate", interpolate_multiplications(bilinear)}}) {
         INFO(function);
         CHECK(multiplications(function) == list.size());
     }
-    CHECK(multiplications("bump") + m.normalise(16).size() == m.bump().size());
+    CHECK(multiplications("bump") + normalise_multiplications(f, 16).size() == bump_multiplications(f).size());
 }
 
 // Displace: S times a code, (S d + bias) times a normal's component; Transform: matrix entries of 26 bits, the reciprocal's
 // two steps and two quotients; normals by rows.
 TEST_CASE("area: multipliers are counted by the widths of their operands") {
-    using Widths = std::map<OperandWidths, std::uint64_t>;
+    using Widths = std::map<datapath::OperandWidths, std::uint64_t>;
     auto units = area();
     CHECK(units["transform"].multipliers == Widths{{{32, 26}, 9}, {{33, 32}, 4}, {{33, 31}, 2}, {{16, 16}, 9}});
     CHECK(units["transform"].partial_product_bits() == 9 * 32 * 26 + 4 * 33 * 32 + 2 * 33 * 31 + 9 * 256);
@@ -228,7 +241,7 @@ TEST_CASE("area: three machines have three times the hardware of one") {
     MachineSetup setup = setup_of(with_settings(timed_job(), "hardware.queue_capacity=40"));
     setup.machines = 3;
     const Simulation three(setup, 1000);
-    const UnitArea all = total_area(area_of(three)), one = total_area(design_area(setup.design, setup.registers));
+    const UnitArea all = total_area(area_of(three)), one = total_area(area_of(three.pipeline.units()));
     CHECK(all.multiplier_count() == 3 * one.multiplier_count());
     CHECK(all.register_bits == 3 * one.register_bits);
     CHECK(all.memory_bits == 3 * one.memory_bits);
