@@ -32,7 +32,6 @@ class Stage : public Unit {
     /// servers: parallel pipelines, used round-robin. memory_latency: of the table that the unit reads.
     Stage(const sc_core::sc_module_name& name, const UnitContext& context, const UnitTiming& timing,
           unsigned servers = 1, unsigned memory_latency = 0);
-    ~Stage() override;
 
     /// Call these in the derived unit's constructor: for its input; for each output, with the function that makes its
     /// payload from a result and the parts that it is for; for each port that it reads through (most_requests: the most
@@ -86,7 +85,7 @@ class Stage : public Unit {
     const sc_core::sc_time latency_;
     bool may_wait_ = false;
     StreamInput<In>* input_ = nullptr;
-    const std::unique_ptr<Machinery> machinery_;
+    const std::shared_ptr<Machinery> machinery_;  // its deleter, unlike a unique_ptr's, needs no stage_steps.h
 };
 
 }  // namespace tessera

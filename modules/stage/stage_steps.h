@@ -72,14 +72,11 @@ Stage<In, Out>::Stage(const sc_core::sc_module_name& name, const UnitContext& co
     : Unit(name, context.clock),
       timing_(timing),
       latency_(clock_.period() * timing.latency),
-      machinery_(std::make_unique<Machinery>(timing, servers, memory_latency)) {
+      machinery_(std::make_shared<Machinery>(timing, servers, memory_latency)) {
     const ItemWidths widths(context);
     area_.register_bits = timing.buffer * widths.of<In>();
     keeps(std::max(widths.of<In>(), widths.of<Out>()));
 }
-
-template <class In, class Out>
-Stage<In, Out>::~Stage() = default;
 
 template <class In, class Out>
 bool Stage<In, Out>::reads_tables() const {
