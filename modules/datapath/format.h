@@ -44,7 +44,7 @@ struct Formats {
     Format summed_height = Format::make_unsigned(32, 0);  ///< SAT entry, modulo 2^bits, in displacement codes
     Format screen = Format::make_signed(24, 8);           ///< P's in pixels
     int generation_bits = 4;
-    bool highlight_tag = false;  ///< with a Highlight Test: split_by in a queue entry has a bit for it
+    bool highlight_tag = false;  ///< with a Highlight Test: only then split_by in a queue entry has a bit for it
     bool final_edges = false;    ///< a queue entry marks its final edges
     bool codes = false;          ///< a vertex carries its displacement code
     HeightTest height_test = HeightTest::summed_height;

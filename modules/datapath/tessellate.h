@@ -14,7 +14,8 @@ constexpr std::uint8_t kept_generation(std::uint8_t generation, const Formats& f
 }
 
 /// A child's final edges: an edge between two corners of its parent is an edge of the parent. It is final unless it
-/// requested a split and another edge was cut instead.
+/// requested a split and another edge was cut instead. With k split edges, k + 1 children have 3 (k + 1) edges, 4 k of
+/// them new: edges tested = 3 x base triangles + 4 x edges split + edges left uncut, which every run checks.
 /// `corners`: those of the child, as returned by triangulate().
 constexpr std::uint8_t final_edges_of(const std::array<std::uint8_t, 3>& corners, unsigned asked) {
     unsigned edges = 0;

@@ -37,24 +37,27 @@ struct DeviceDesign {
 ///            effects. DMI: refused. `reset`: optional; while high the device is in reset.
 /// Out:       `bus`: base protocol, b_transport with annotated delay; two transfers may be under way at a time, one
 ///            reading and one writing. `interrupt`: optional; level.
-/// Frame:     start validates all registers, copies the tables selected by `fetch` to the memories that the units read
-///            (Pipeline::write_table; entry bits beyond the format are dropped), sends the base triangles to the machine,
-///            and writes each finished
-///            triangle that is not culled to the ring (records.h). done and interrupt follow when all are written.
-///            While the ring is full (write index - read index = size) the machine is held back. Each frame resets
-///            indices and counters.
+/// Frame:     accesses change a copy of the machine's registers. start checks it as a whole and passes it on: the
+///            machine never sees part of a change, nor values that its arithmetic excludes. Then the device copies the
+///            tables selected by `fetch` to the memories that the units read (Pipeline::write_table; entry bits beyond
+///            the format are dropped), sends the base triangles to the machine, and writes each finished triangle that
+///            is not culled to the ring (records.h). done and interrupt follow when all are written. While the ring is
+///            full (write index - read index = size) the machine is held back. Each frame resets indices and counters.
 /// Errors:    software errors set `error` and interrupt. A refused frame changes nothing else. A stopped frame
 ///            continues until the machine is empty; its finished triangles are dropped, and no record is begun.
 /// Reset:     stops a frame in the same way. The machine's units have no reset wires: the triangles in the machine go
-///            through it, with a Generation Test that splits no further edge. busy and resetting stay set until it is
-///            empty; then all registers have their reset values. The tables keep their contents.
+///            through it, with a Generation Test that splits no further edge, so that even a recursion without end
+///            ends. (Decision: emptying every ring, pipeline and memory queue would add a second behaviour to each.)
+///            busy and resetting stay set until the machine is empty; then all registers have their reset values. The
+///            tables keep their contents.
 /// Timing:    an access takes `register_cycles` for each word, a refused one for one word. While a frame is under way an
 ///            access first waits for the initiator's delay to pass. DMA: dma_channel.h. Functional mode obeys the global
 ///            quantum; timed mode waits for each burst's delay to pass. A bus, or a table memory of a UnitFactory, that
 ///            does not answer for Design::answer_cycles is an SC_ERROR.
 /// Capacity:  `triangles_ahead` and `finished_triangles`. Triangles that wait, or can be added by those under way: as
 ///            many as the Triangle Queue or its off-chip memory holds, whichever holds more (unbounded queue: as many
-///            as off-chip memory). Beyond that the frame is stopped.
+///            as off-chip memory). Beyond that the frame is stopped, since a queue that overflows halts the clock for
+///            good. All children that those under way may have are counted, so that it may stop somewhat early.
 class Device : public sc_core::sc_module, private tlm::tlm_analysis_if<datapath::TrianglePass> {
   public:
     tlm_utils::simple_target_socket<Device> registers{"registers"};

@@ -8,6 +8,8 @@
 
 // Records in bus memory: 32-bit words, little endian, the same for all formats. A signed value is sign-extended to the
 // whole word. Each list below is the layout: packing, the C header and the documentation are derived from it.
+// (Decision: not packed like queue entries, so that a C program declares a record as a struct. A base triangle takes
+// 144 bytes instead of 92, but is read once per frame.)
 
 namespace tessera {
 

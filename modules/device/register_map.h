@@ -128,8 +128,9 @@ struct LargestMap {
 };
 
 /// The table of all registers, in order of their offsets: control registers, below 0x100, then those of the machine
-/// (datapath::describe_registers), each choice in a word of its own. `reset`: the formats, and the machine's reset
-/// values. The offsets are the same in every design; widths follow from the formats.
+/// (datapath::describe_registers), each choice in a word of its own, so that software sets one without reading its
+/// neighbours. `reset`: the formats, and the machine's reset values. The offsets are the same in every design, so that
+/// one C header serves all; widths follow from the formats.
 std::vector<DeviceRegister> register_map(const datapath::Registers& reset, const LargestMap& largest);
 
 }  // namespace tessera

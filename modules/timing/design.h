@@ -18,7 +18,9 @@ struct Design : DesignOptions {
     /// Cycles for which a memory that a UnitFactory has joined, or the device's bus, may leave a request unanswered
     /// (sockets/answer_watch.h); 0: no limit.
     unsigned answer_cycles = 1'000'000;
-    bool packed_streams = false;  ///< each item goes through its packed form: slow, but checks that it is complete
+    /// Each item goes through its packed form, for tests: slow, but data outside its fields are lost, and a value that
+    /// does not fit is an error. Not tied to NDEBUG, which a client sets for itself: nothing in an installed header is.
+    bool packed_streams = false;
 };
 
 /// Register stages of a pipeline, over all servers. further_stages: cycles that an item spends outside (in a memory)
@@ -49,7 +51,8 @@ constexpr unsigned displace_vertex_latency(const Design& design) {
 }
 
 /// Most triangles that have left the queue but of which no part has reached Pass or Tessellate: one in Get Triangle,
-/// and one for each place in the units between. Pass or Tessellate has room for that many to wait for their parts.
+/// and one for each place in the units between; 33 by default. Pass or Tessellate has room for that many to wait for
+/// their parts.
 constexpr unsigned triangles_ahead_of_parts(const Design& design) {
     const Timing& t = design.timing;
     return 1 + t.calculate_new_p.buffer + register_stages(t.calculate_new_p) + t.displace_vertex.buffer +
@@ -58,7 +61,8 @@ constexpr unsigned triangles_ahead_of_parts(const Design& design) {
 }
 
 /// Width of a triangle's tag: enough to distinguish all triangles between Get Triangle and Pass or Tessellate: those
-/// that wait there, one that Get Triangle still offers, and those whose parts have begun to arrive.
+/// that wait there, one that Get Triangle still offers, and those whose parts have begun to arrive. 42 by default, so
+/// 6 bits.
 constexpr int tag_bits(const Design& design) {
     // In the family design one triangle is being joined in Tessellation, and one is being tested.
     const unsigned triangles = triangles_ahead_of_parts(design) + 1 + design.timing.pass_or_tessellate.buffer +

@@ -11,8 +11,9 @@ namespace tessera {
 /// In:   GeometryOperands.
 /// Out:  BasePoint: for an edge (P_i + P_j) >> 1, likewise t and N, the latter not yet of unit length; vertices and
 ///       normals unchanged. In the family design N_ij and N'_ij arrive with the edge. (Decision: t_ij and the mean
-///       normal are calculated both here and in Tessellation Tests, so that the two branches need no stream between
-///       them; Pass or Tessellate checks that they agree.)
+///       normal are calculated both here and in Tessellation Tests, since a stream between the two branches would
+///       serialise them. It costs five adders and a second use of the normalise unit, in Displace Vertex. Pass or
+///       Tessellate checks that both t_ij agree.)
 /// Arithmetic: add, arithmetic shift right by 1.
 /// Timing: one vertex, normal or edge per interval; latency 1, interval 1 by default.
 /// Waits only for its input; held back by Displace Vertex.

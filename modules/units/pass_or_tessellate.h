@@ -20,7 +20,8 @@ namespace tessera {
 ///
 /// In:   each triangle from Get Triangle, and its parts from both branches; the last part completes it.
 /// Out:  to Tessellation, a triangle with split != 0, or one that is finished but lacks N's of a vertex (it makes one
-///       more pass for its normals); to Lighting, a finished triangle.
+///       more pass for its normals: N' of a base vertex comes from Tessellation Tests, so that N's follows on the next
+///       pass, as in the paper for inserted vertices); to Lighting, a finished triangle.
 /// Arithmetic: logic; for culling two products of screen bits + 1 and a compare.
 /// Check: both branches' t_ij must agree, else SC_ERROR.
 /// Timing: one triangle per interval; latency 1, interval 1 by default, from the arrival of its last part.

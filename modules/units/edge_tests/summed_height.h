@@ -16,7 +16,9 @@ namespace tessera {
 ///         around a repeated map. A rectangle is one request.
 ///         In a design whose vertices carry their displacement codes (Formats::codes) the sums over rectangles of one
 ///         texel are codes: those of the edge's ends, and for its midpoint one read of the displacement map. Edges of a
-///         base triangle, whose vertices have no codes yet, read the table.
+///         base triangle, whose vertices are displaced while they are tested, read the table. (Decision: reading
+///         all three codes would save the vertices' bits, but takes three entries from ports that Displace Vertex needs
+///         for every midpoint.)
 /// Arithmetic: subtract, shift, add, compare; sums modulo 2^n. With the area threshold two multiplications.
 /// Timing: latency 3 after the last table entry; interval 1 by default, or that of the table reads if longer: with one
 ///         port a rectangle takes four cycles, an edge 12, a triangle 36.

@@ -17,6 +17,11 @@ namespace tessera {
 /// chooses the diagonal, and sends each new edge of the children to the tests once. A base triangle is joined with its
 /// vertices; its three edges are new.
 ///
+/// (Decision: the triangle design needs a pass to determine that nothing splits, displaces midpoints of edges that are
+/// then not split, tests inner edges from both sides, and transforms normals to view space in a pass of their own. Here
+/// edges tested = 3 x finished triangles + edges left uncut, and midpoints displaced = edges split, which every run
+/// checks.)
+///
 /// In:   each triangle from Get Triangle, and its parts from Transform; the last part completes it.
 /// Out:  to Pass or Tessellate the triangle and its inserted vertices; once these are accepted, to Tessellation Tests
 ///       the edges, every n-th to each of n lanes.
