@@ -15,7 +15,8 @@ namespace tessera {
 ///                                ├──> Normal Test ──────────┤
 ///              P's ──────────────┴──> View Test ────────────┘
 ///
-/// All tests of all edges are evaluated, in parallel, so that reads and widths are those of the paper's hardware. With the tests evaluated cheapest first (Design::test_order):
+/// All tests of all edges are evaluated, in parallel, so that reads and widths are those of the paper's hardware. With
+/// the tests evaluated cheapest first (Design::test_order):
 ///
 ///     edge ──> Calculate New U ──┬──> Tex Coord Test ──┐
 ///              P's ──────────────┼──> View Test ───────┤

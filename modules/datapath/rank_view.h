@@ -37,8 +37,9 @@ static_assert(fits_every_format<RankViewWidths>());
 
 /// The distance of P' from the eye, in the view distance's format, rounded down: the norm
 ///     max(|x|, |y|, |z|, 11/16 of the greatest sum of two of them, 9/16 of their sum),
-/// 0.873 to 1 times the Euclidean length, independent of the viewing direction. Saturates at the greatest distance, not
-/// counted.
+/// 0.873 to 1 times the Euclidean length, without a multiplier. Saturates at the greatest distance, not counted.
+/// (Decision: not w, with which everything beside the viewer counts as near: a strip across the map is split down to
+/// single texels. The mesh does not change when the camera turns, except for bounds of regions behind it.)
 constexpr std::uint32_t eye_distance(const Position& p, const TransformParameters& parameters, const Formats& formats) {
     const auto away = [](std::int64_t a, std::int64_t b) { return static_cast<std::uint64_t>(a > b ? a - b : b - a); };
     const std::uint64_t x = away(p.x, parameters.eye[0]), y = away(p.y, parameters.eye[1]);
@@ -80,7 +81,8 @@ constexpr std::uint64_t midpoint_radius(std::uint32_t code) {
 /// instead of per point. The threshold of a bound rises by one, with the least distance in the midpoint's sphere: if
 /// the eye is in the sphere the edge requests a split; if all of the sphere is behind the viewer it does not. Both
 /// sides are on scales of 16 bits for any entry width: a rank has 10 bits after the point, a bound 11. An entry of 0
-/// never requests a split.
+/// never requests a split. There is no test against the sides of the picture, with which a bound would still hold: it
+/// would save triangles outside the picture.
 constexpr bool rank_test_in_view(const RankEntry& entry, const EdgeInView& ends, const TestParameters& parameters,
                                  const Formats& formats) {
     const auto level = static_cast<std::int64_t>(distance_level(ends.distance));

@@ -12,9 +12,9 @@
 
 namespace tessera {
 
-/// The result of every test on every edge of a pass, for reports and the mesh file: the same in all designs. Where the
-/// machine does not evaluate a test (Design::test_order, Formats::final_edges), this calls the datapath, which takes no
-/// cycles.
+/// The result of every test on every edge of a pass, for reports and the mesh file: byte for byte the same in all
+/// designs. Where the machine does not evaluate a test (Design::test_order, Formats::final_edges), this calls the
+/// datapath, which takes no cycles.
 class Decisions : public tlm::tlm_analysis_if<datapath::TrianglePass> {
   public:
     struct Counts {

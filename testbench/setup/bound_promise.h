@@ -10,7 +10,10 @@
 
 namespace tessera {
 
-/// What the promise of tests.bound_threshold depends on.
+/// What the promise of tests.bound_threshold depends on. An entry bounds the error of the hierarchy's triangles only. A
+/// split that another test requests leaves triangles with other edges, and a midpoint raised to a peak of the map moves
+/// points beside it away from their heights. Such requests cannot be kept in the hierarchy's order: which edge is next
+/// depends on the triangle, and an edge's two triangles would disagree.
 struct BoundFacts {
     TestSettings tests;
     datapath::HeightTest height_test = datapath::HeightTest::summed_height;

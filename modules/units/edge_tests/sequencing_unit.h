@@ -16,10 +16,11 @@ namespace tessera {
 ///   Tex Coord Test (with Generation), View Test   every edge; they read no table
 ///   Normal Test                                   edges that none of these keeps whole; in the triangle design also
 ///                                                 a base triangle's edges, which carry the N' of its vertices
-///   Summed Height Test                            edges that may split, and that neither Normal nor Highlight Test
+///   Summed Height Test, or Curvature or Mipmap    edges that may split, and that neither Normal nor Highlight Test
 ///                                                 splits
 ///
-/// A Rank Test, which reads one entry, is evaluated before the Normal Test, except for the edges of a base triangle.
+/// A Rank Test, which reads one entry, is evaluated before the Normal Test, except for the edges of a base triangle: the
+/// Normal Test keeps the corners' N' of one triangle at a time.
 /// Edges without a midpoint on the lattice skip it. The Normal Test then receives the edges that the Rank Test splits,
 /// for N' of their midpoints, and the others only if it is switched on.
 class SequencingUnit : public Unit {

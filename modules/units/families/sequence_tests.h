@@ -13,7 +13,7 @@
 namespace tessera {
 
 /// Sequence Tests in the family design. Several lanes of cheap tests share one or more Normal Tests and the Summed
-/// Height Test. An edge leaves as soon as it is decided: Pass or Tessellate finds an edge's family by its tag. In order of
+/// Height Test. An edge leaves as soon as it is decided: Pass or Tessellate finds its family by its tag. In order of
 /// arrival every edge would wait for the slowest test.
 ///
 /// In:   from each lane the operands of the two table tests and the results of the cheap tests; the results of the

@@ -84,9 +84,9 @@ def add_view_from_the_rim(section, height, ranks, bounds, papers):
     worst = max(largest / bound for bound, (*_, largest) in bounds.items())
     section.claims += [
         Claim("From the crater's rim the Rank Test's error in the picture is at most half of the error of the paper's tests.",
-              "modules/DECISIONS.md", ", ".join(f"{part:.2f} of that error with {budget:,} triangles" for part, budget in zip(parts, SEEN_BUDGETS)),
+              "testbench/setup/README.md", ", ".join(f"{part:.2f} of that error with {budget:,} triangles" for part, budget in zip(parts, SEEN_BUDGETS)),
               reproduced_if(max(parts) <= 0.5)),
-        Claim("No grid point in the picture appears farther from the mesh than the bound.", "modules/DECISIONS.md",
+        Claim("No grid point in the picture appears farther from the mesh than the bound.", "golden/ALGORITHM.md 4.7",
               f"{len(bounds)} runs: at most {worst:.3f} of the bound", reproduced_if(worst <= 1))]
     section.pictures.append(Picture(shown.render("wireframe"), "From the rim, with the view-dependent Rank Test"))
     section.tables.append(Table(
@@ -106,7 +106,7 @@ def measure(study):
     section, height = Section(), elevations(MAP)
     errors = {key: rms_and_largest(run.mesh, height) for key, run in bounds.items()}
     worst = max(largest / (bound * FULL_SCALE) for (bound, _), (_, largest) in errors.items())
-    section.claims = [Claim("No grid point is farther from the mesh than the Bound Test's threshold.", "modules/DECISIONS.md",
+    section.claims = [Claim("No grid point is farther from the mesh than the Bound Test's threshold.", "testbench/check/PROMISES.md",
                             f"{len(bounds)} runs: at most {worst:.3f} of the threshold", reproduced_if(worst <= 1))]
     section.pictures = [Picture(ranks[SHOWN].render("shaded"), f"Crater Lake, {ranks[SHOWN].triangles:,} triangles")]
     section.tables = [

@@ -189,7 +189,7 @@ def add_curves(section, curves, in_picture):
               "sections 2.3.1, 5", "each together with the Normal Test. " + beside(BESIDE), reproduced_if(best(BESIDE))),
         Claim("A patch with a factor for each edge, from its length on the screen, and uniform inside, as on GPUs since Direct3D 11.",
               "since the paper", f"triangles at equal RMS error, {multiples(BESIDE + SUMMED)}; {multiples(RANK)}. {in_picture}", MEASURED),
-        Claim("The Rank Test's error is below RTIN's at every number of triangles.", "modules/DECISIONS.md",
+        Claim("The Rank Test's error is below RTIN's at every number of triangles.", "beyond the paper",
               "; ".join(f"{name}: {min(parts):.2f} to {max(parts):.2f} times its RMS error" for name, parts in against.items()),
               reproduced_if(all(max(parts) < 1 for parts in against.values())))]
     section.tables.append(Table(
@@ -224,7 +224,7 @@ def add_machines(section, timed):
 def add_fitted(section, fits):
     gains = [1 - after[1] / before[1] for before, after in fits]
     section.claims.append(Claim(
-        "Fitted heights reduce the error of the same mesh by an eighth.", "modules/DECISIONS.md",
+        "Fitted heights reduce the error of the same mesh by an eighth.", "testbench/setup/tables/fitted_heights.h",
         ", ".join(f"{100 * gain:.0f} % with {before[0]:,} triangles" for gain, (before, _) in zip(gains, fits)), reproduced_if(min(gains) > 0.13)))
 
 

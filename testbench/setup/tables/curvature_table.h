@@ -11,7 +11,7 @@ namespace tessera {
 /// The Curvature Test's table: a pyramid of cells (modules/datapath/curvature.h).
 struct CurvatureTable {
     datapath::MapGeometry covered;       ///< texels: the map's, or more if it clamps and the mesh extends beyond it
-    std::vector<std::uint64_t> entries;  ///< packed, 36 bits each; level after level from 2, row by row
+    std::vector<std::uint64_t> entries;  ///< packed, 36 bits each, 12 per texel; by level from 2, then row by row
 };
 
 /// For each cell, the least-squares quadratic over a square of 2^l + 1 texels around it, addressed as the map is, and
