@@ -30,7 +30,8 @@ namespace tessera {
 /// In:   calculate_new_u.input: edges; vertices of a base triangle. view_test.from_transform: their screen positions.
 /// Out:  to_pass_or_tessellate(): TestedEdge.
 /// With three units each receives one edge of a triangle and, for a base triangle, the two vertices of the edge
-/// (parts_for_tests).
+/// (parts_for_tests): they share nothing but the memories. Each corner is then bumped twice, for three more reads of
+/// the normal map and one more cycle per base triangle.
 /// Timing: edges go one after another through one pipeline; bound by the Summed Height Test's table reads. A design has
 ///       one such unit or three, one for each edge of a triangle, which share the memories.
 /// Waits for Transform (base triangles), the Summed Height Table, the normal map; held back by Pass or Tessellate.

@@ -8,7 +8,8 @@
 
 namespace tessera::datapath {
 
-/// A Triangle Queue entry, packed for off-chip memory.
+/// A Triangle Queue entry, packed for off-chip memory as the hardware would write it, so that every spilling run tests
+/// packing and unpacking.
 ///
 /// Layout: the fields of describe_triangle(), the lowest bit first, little endian, without gaps, each as wide as its
 /// format, in all stream_widths().triangle bits. Signed fields are two's complement. Unused bits of the last byte are

@@ -50,10 +50,10 @@ struct DeviceDesign {
 ///            ends. (Decision: emptying every ring, pipeline and memory queue would add a second behaviour to each.)
 ///            busy and resetting stay set until the machine is empty; then all registers have their reset values. The
 ///            tables keep their contents.
-/// Timing:    an access takes `register_cycles` for each word, a refused one for one word. While a frame is under way an
-///            access first waits for the initiator's delay to pass. DMA: dma_channel.h. Functional mode obeys the global
-///            quantum; timed mode waits for each burst's delay to pass. A bus, or a table memory of a UnitFactory, that
-///            does not answer for Design::answer_cycles is an SC_ERROR.
+/// Timing:    an access takes `register_cycles` for each word, a refused one for one word. While a frame is under way
+///            an access first waits for the initiator's delay to pass. DMA: dma_channel.h. Functional mode obeys the
+///            global quantum; timed mode waits for each burst's delay to pass. A bus, or a table memory of a
+///            UnitFactory, that does not answer for Design::answer_cycles is an SC_ERROR.
 /// Capacity:  `triangles_ahead` and `finished_triangles`. Triangles that wait, or can be added by those under way: as
 ///            many as the Triangle Queue or its off-chip memory holds, whichever holds more (unbounded queue: as many
 ///            as off-chip memory). Beyond that the frame is stopped, since a queue that overflows halts the clock for

@@ -18,6 +18,8 @@ namespace tessera {
 /// Order:     order of the calls. Without a window a request starts when each bank it reads has a free port. With a
 ///            window of n it starts when the n-th request before it has sent its last address: reads of up to n
 ///            requests overlap. Addresses wait for a port of their bank in order, and can delay later requests.
+///            (Decision: out of order, requests would need tags and a reorder buffer; ports reserved for future cycles
+///            would be a buffer without cost.)
 class BankedPorts {
   public:
     BankedPorts(const MemoryTiming& timing, const datapath::TableLayout& layout)

@@ -15,7 +15,8 @@ namespace tessera {
 /// memory or of off-chip memory.
 ///
 /// In:        requests, as a MemoryServer. Out: `to_memory`, an ordinary read or write for each entry.
-/// Interval:  one entry per cycle, in order; each entry only after END_REQ of the one before.
+/// Interval:  one entry per cycle, in order, so that a memory as fast as a table gives the table's cycle counts; each
+///            entry only after END_REQ of the one before.
 /// Latency:   that of the memory behind the bridge, rounded up to whole cycles.
 /// Accepts:   END_REQ by return, later, or implied by the answer; an answer by return (TLM_COMPLETED, or BEGIN_RESP, to
 ///            which END_RESP is sent at once) or later; answers in any order. Requests are answered in

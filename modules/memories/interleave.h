@@ -11,8 +11,7 @@ namespace tessera {
 /// The mapping from a table's entries to its banks.
 ///
 /// entry:        entry k, counted row by row, lies in bank k mod `banks`. If `banks` is a power of two and the pitch
-/// one
-///               more than a multiple of it, as for a Summed Height Table, two corners of each square share a bank.
+///               one more than a multiple of it, as for a Summed Height Table, two corners of each square share a bank.
 /// exclusive_or: bit b of the bank is the parity of selected bits of the column and of the row. Of the lowest bits of
 ///               the column, as many as the bank number has, bit b occurs only in the mask of bank bit b, so that the
 ///               column's other bits and the row address an entry within its bank.
@@ -22,8 +21,10 @@ class BankOfEntry {
         std::uint32_t column;
         std::uint32_t row;
     };
-    /// The masks of bank bit b. Found by a search for the fewest conflicts within an edge's three rectangles, over all
-    /// numbers of banks (modules/DECISIONS.md).
+    /// The masks of bank bit b. A search that changes one or two bits at a time, from 24 random starts, found them: for
+    /// the fewest cycles of an edge's twelve reads, summed over 2 to 64 banks, with edges of all lengths up to 250
+    /// texels, half of them powers of two, a third parallel to each axis. With 4, 8, 16 banks an edge takes 4.1, 2.9,
+    /// 2.3 cycles; interleaved by entry 5.2, 4.2, 3.6; with random banks 5.2, 3.8, 3.0.
     static constexpr std::array<Masks, 6> masks{
         {{0x041, 0x0cd}, {0x142, 0x1b4}, {0x184, 0x127}, {0x188, 0x1fa}, {0x010, 0x0b7}, {0x120, 0x022}}};
 

@@ -12,8 +12,8 @@
 namespace tessera {
 
 /// A memory that holds one table, or the second side of such a memory: a dual-port memory has two sides, each with its
-/// own ports, queue and statistics, so that readers of one side do not wait for the other's. Both share one storage; the
-/// second counts as a copy, as every port does (stage/area.h). (Decision: with shared ports the Curvature Test and
+/// own ports, queue and statistics, so that readers of one side do not wait for the other's. Both share one storage;
+/// the second counts as a copy, as every port does (stage/area.h). (Decision: with shared ports the Curvature Test and
 /// Displace Vertex delay each other, in the paper's design by 3.3 cycles per triangle on half donut, 15.1 instead of
 /// 11.8, by 0.3 on Crater Lake; and the schedule, which has no order between readers, could not check the design.)
 ///

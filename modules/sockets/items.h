@@ -9,8 +9,8 @@
 #include "modules/sockets/parts.h"
 
 // The items of the streams. Each describes its fields once (modules/datapath/fields.h); its packed form, its width,
-// its signals in a waveform and its rows in modules/sockets/README.md are derived from that description. An item carries
-// all data that its consumer needs: data that units shared would have no wires, and the widths would be wrong.
+// its signals in a waveform and its rows in modules/sockets/README.md are derived from that description. An item
+// carries all data that its consumer needs: data that units shared would have no wires, and the widths would be wrong.
 
 namespace tessera {
 

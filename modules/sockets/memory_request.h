@@ -24,8 +24,8 @@ struct MemoryRequest {
 };
 
 /// The protocol between a unit's MemoryPort and a MemoryServer. It has its own traits class, because a memory of the
-/// base protocol, which reads one address, would answer a gather wrongly. base_protocol_bridge.h connects to memories
-/// of the TLM-2.0 base protocol.
+/// base protocol, which reads one address, would answer a gather wrongly, without a message; so the binding does not
+/// compile. base_protocol_bridge.h connects to memories of the TLM-2.0 base protocol.
 ///
 /// b_transport, DMI, debug transport: as in the base protocol; debug transport returns the bytes moved, all or 0.
 /// nb_transport: BEGIN_REQ offers a request; END_REQ, by return (TLM_UPDATED) or later on the backward path, accepts

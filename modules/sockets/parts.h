@@ -12,6 +12,8 @@ namespace tessera {
 
 /// The parts of a triangle, one bit each, in the order in which Get Triangle sends them: the vertices of a base
 /// triangle, normals that have no N's yet, edges. The new edges of a family (datapath/family.h) continue the last.
+/// (Decision: a part is an item, since the tests work edge by edge and Transform vertex by vertex, which whole
+/// triangles would not model. With words as items, transfers would dominate the simulation time.)
 using Parts = std::uint16_t;
 constexpr unsigned first_normal_part = 3;
 constexpr unsigned first_edge_part = 6;

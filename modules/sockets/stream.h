@@ -15,7 +15,9 @@ namespace tessera {
 ///
 /// nb_transport (timed mode), two phases: BEGIN_REQ offers one item; END_REQ, by return (TLM_UPDATED) or later on the
 /// backward path, means that the consumer has accepted it. Withholding END_REQ is back-pressure. Exclusion rule: no
-/// second BEGIN_REQ before END_REQ. The payload stays unchanged until END_REQ; the consumer copies it.
+/// second BEGIN_REQ before END_REQ. The payload stays unchanged until END_REQ; the consumer copies it. (Decision: the
+/// fewest phases that model exclusion and back-pressure; a memory's BEGIN_RESP adds latency. Both ends check each other
+/// in every build, for two compares.)
 template <class Payload>
 struct Stream {
     using tlm_payload_type = Payload;

@@ -7,7 +7,8 @@
 namespace tessera {
 
 /// State that a unit keeps for each of a few triangles, in order of arrival and looked up by the triangle's tag: a
-/// small content-addressable memory. It grows in functional mode, where triangles can overtake one another.
+/// small content-addressable memory, of one triangle in the Normal Test, of the places in Pass or Tessellate, and of
+/// two more in the View Test. It grows in functional mode, where triangles can overtake one another.
 template <class State>
 class PerTriangle {
   public:

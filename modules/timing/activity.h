@@ -20,7 +20,10 @@ class ActivityObserver {
     virtual ~ActivityObserver() = default;
 };
 
-/// Counts a unit's cycles by state, and the items in it.
+/// Counts a unit's cycles by state, and the items in it. An item stays in a unit from its start to its delivery,
+/// without its time in the input buffer, so that occupancy = throughput times latency can be checked by hand. Where
+/// storing items is the purpose all of their time counts: in a memory from request to response, in the Triangle Queue
+/// from arrival to departure, off chip included.
 class Activity {
   public:
     /// Sets the state at the end of `cycle`. It lasts until another is set. The last call in a cycle counts.

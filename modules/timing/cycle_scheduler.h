@@ -93,8 +93,9 @@ sc_core::sc_time first_rising_edge(const sc_core::sc_clock& clock);
 /// The clock of timed mode: calls the processes scheduled for a cycle, and skips cycles without any.
 ///
 /// Within a cycle processes are called in the order of attachment: attach downstream units first, so that a place
-/// freed in a cycle is filled in the same cycle. The simulation is then the same on every kernel. One SC_METHOD serves
-/// all processes: a wake-up sets a bit in a table instead of notifying an event.
+/// freed in a cycle is filled in the same cycle, through all full stages: the combinational ready of a pipeline without
+/// skid buffers. The simulation is then the same on every kernel. One SC_METHOD serves all processes: a wake-up sets a
+/// bit in a table instead of notifying an event.
 ///
 /// Capacity: 64 processes. If nothing is scheduled, the run is finished or in a deadlock.
 class CycleScheduler : public sc_core::sc_module {

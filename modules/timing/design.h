@@ -33,7 +33,8 @@ constexpr unsigned register_stages(const UnitTiming& timing, unsigned servers = 
 constexpr unsigned height_test_latency(const Design& design, const datapath::Formats& formats) {
     const Timing& t = design.timing;
     const MemoryTiming& its = t.*kind_of(formats.height_test).table_timing;
-    // If the table overlaps the reads of `window` rectangles, there are places for their edges.
+    // If the table overlaps the reads of `window` rectangles, there are places for their edges: those for the latency
+    // alone would be four, half of the rectangles that a window of 24 overlaps.
     const unsigned table = t.read_latency(its) + its.window / 3;
     return height_test_reads_codes(formats) ? std::max(table, t.read_latency(t.displacement_map)) : table;
 }

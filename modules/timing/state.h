@@ -11,6 +11,9 @@ namespace tessera {
 ///   waiting for memory  neither, and an item's table entries are outstanding
 ///   starved             nothing to work on, or an operand is missing (the View Test's screen positions, the other
 ///                       branch in Pass or Tessellate)
+///
+/// (Decision: a unit that is blocked while it still works counts as blocked, since users look for blocked units; one
+/// that computes during its next reads counts as busy.)
 enum class State : std::uint8_t { starved, busy, waiting_for_memory, blocked };
 constexpr std::size_t states = 4;
 

@@ -207,7 +207,8 @@ void PassOrTessellate::step() {
         wake_at(pipeline_.next_start(cycle));
 }
 
-/// The branch that alone delays the oldest triangle; null if parts are missing from both branches, or from neither.
+/// The branch that alone delays the oldest triangle; null if parts are missing from both branches, when neither is the
+/// cause, or from neither.
 const sc_core::sc_object* PassOrTessellate::late_branch() const {
     if (incomplete_.empty()) {
         for (const StreamInput<TestedEdge>& input : from_tessellation_tests)

@@ -28,7 +28,8 @@ namespace tessera {
 /// Capacity: `buffer` incomplete triangles (8). A triangle waits at the input from Get Triangle until its first part
 ///       arrives from Transform and opens a place for it; that input has room for all triangles that can be ahead of
 ///       their parts (triangles_ahead_of_parts). Edges from Tessellation Tests that arrive earlier wait at their own
-///       input, which holds as many edges as there are places.
+///       input, which holds as many edges as there are places. (Decision: if the first part of either branch opened a
+///       place, triangles behind a pass for normals, which has no tests, could take all places: a deadlock.)
 /// Waits for both branches; held back by Tessellation and Lighting.
 class PassOrTessellate : public DecidingUnit {
   public:

@@ -22,8 +22,9 @@ namespace tessera {
 ///       wait, whenever that changes: one bit, which Get Triangle receives in the same cycle and stores.
 /// Capacity: `capacity` triangles on chip, unbounded by default and in functional mode; the high-water mark shows what
 ///       a design needs. Beyond it triangles spill to off-chip memory: the newest (first in first out), or the oldest
-///       on chip (last in first out). They return when there is room on chip (first in first out), or when at most half
-///       of it is in use (last in first out, so that a triangle does not go back and forth).
+///       on chip (last in first out). They return when there is room on chip (first in first out; until none is left,
+///       later triangles go off chip, too, which keeps the order), or when at most half of it is in use (last in first
+///       out, so that a triangle does not go back and forth).
 /// Timing: one triangle in and one out per interval; latency 1, interval 1 by default, from store to output.
 /// Waits for Tessellation, and for off-chip memory; held back by Get Triangle, and when full by off-chip memory.
 class TriangleQueue : public Unit {

@@ -8,10 +8,10 @@
 namespace tessera {
 
 /// Curvature Test, in place of the Summed Height Test: how far does the map deviate from the edge's chord? The host has
-/// fitted a quadratic to the map around each cell of a pyramid; an entry also holds what the fit leaves over. (Decision:
-/// a feature narrower than an edge can lie beside all of the Summed Height Test's rectangles. A fit detects it, with one
-/// read instead of twelve.) Unlike ranks, cells know of no lattice: the Tex Coord and Generation Tests end the
-/// recursion, and all edges that request a split are cut at once.
+/// fitted a quadratic to the map around each cell of a pyramid; an entry also holds what the fit leaves over.
+/// (Decision: a feature narrower than an edge can lie beside all of the Summed Height Test's rectangles. A fit detects
+/// it, with one read instead of twelve.) Unlike ranks, cells know of no lattice: the Tex Coord and Generation Tests end
+/// the recursion, and all edges that request a split are cut at once.
 ///
 /// In:   HeightOperands. Out: HeightResult.
 /// Memory: one entry of the Curvature Table per edge, from the level that matches the edge's length. For an edge of at

@@ -8,9 +8,10 @@
 namespace tessera {
 
 /// Mipmap Test, in place of the Summed Height Test: does the filtered map at the edge's midpoint deviate from the
-/// chord? The paper (2.3.1) names mipmaps and "a maximal filter" as alternatives, without decision rules. One test serves
-/// both: the host fills the table with means or with maxima. The paper's claim that sums filter better holds: each test
-/// alone, with 4,800 triangles of Crater Lake, has an RMS error of 7.8 m with sums, 10.8 with means, 10.9 with maxima.
+/// chord? The paper (2.3.1) names mipmaps and "a maximal filter" as alternatives, without decision rules. One test
+/// serves both: the host fills the table with means or with maxima. The paper's claim that sums filter better holds:
+/// each test alone, with 4,800 triangles of Crater Lake, has an RMS error of 7.8 m with sums, 10.8 with means, 10.9
+/// with maxima.
 ///
 /// In:   HeightOperands. Out: HeightResult.
 /// Memory: three entries of the Mipmap Table per edge, at its ends and midpoint, from the level that fits its length: a

@@ -15,15 +15,15 @@ namespace tessera {
 ///
 /// In:   NormalOperands: edges; for a base triangle its vertices first, which are bumped and go no further.
 ///       In the family design N' of all vertices is known, and only edges arrive.
-/// Out:  NormalResult: N_ij, T_ij, N'_ij, the tests' bits, and N' of the edge's first end: a base triangle's three edges
-///       deliver its corners' N' without a stream for vertices to Pass or Tessellate, for 3 x 16 wires.
+/// Out:  NormalResult: N_ij, T_ij, N'_ij, the tests' bits, and N' of the edge's first end: a base triangle's three
+///       edges deliver its corners' N' without a stream for vertices to Pass or Tessellate, for 3 x 16 wires.
 /// Memory: one read of the normal map per edge or vertex; with a bilinear filter (Formats::filter) one request of four
 ///       entries.
 /// Arithmetic: add, shift by 1; the pipeline's existing normalise and bump units; six absolute differences and
 ///       compares, one OR. A bilinear filter adds nine multiplications. The Highlight Test adds three dot products with
 ///       one vector, six compares with a second threshold and three with a cosine, at full width, so that the ends'
-///       products equal the golden model's bit for bit; the differences are shared. (Decision: nine multipliers keep the
-///       interval at 1. Three would do if each vertex carried its result, as one more bit.)
+///       products equal the golden model's bit for bit; the differences are shared. (Decision: nine multipliers keep
+///       the interval at 1. Three would do if each vertex carried its result, as one more bit.)
 /// Timing: one edge or vertex per interval; latency 9 plus the map read; interval 1 by default, or that of the map
 ///       reads if longer. A Highlight Test adds its own latency, 1 by default, and nothing to the interval. An edge of
 ///       a base triangle starts when the map entries of all its corners in this unit have arrived.

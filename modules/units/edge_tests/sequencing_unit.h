@@ -19,10 +19,10 @@ namespace tessera {
 ///   Summed Height Test, or Curvature or Mipmap    edges that may split, and that neither Normal nor Highlight Test
 ///                                                 splits
 ///
-/// A Rank Test, which reads one entry, is evaluated before the Normal Test, except for the edges of a base triangle: the
-/// Normal Test keeps the corners' N' of one triangle at a time.
-/// Edges without a midpoint on the lattice skip it. The Normal Test then receives the edges that the Rank Test splits,
-/// for N' of their midpoints, and the others only if it is switched on.
+/// A Rank Test, which reads one entry, is evaluated before the Normal Test, except for the edges of a base triangle:
+/// the Normal Test keeps the corners' N' of one triangle at a time. Edges without a midpoint on the lattice skip it.
+/// The Normal Test then receives the edges that the Rank Test splits, for N' of their midpoints, and the others only if
+/// it is switched on.
 class SequencingUnit : public Unit {
   public:
     StreamOutput<HeightOperands> to_summed_height_test{"to_summed_height_test"};

@@ -7,8 +7,8 @@
 namespace tessera {
 
 /// Tex Coord Test (paper figure 8, 2.5, 3.1.2): has the map's resolution been reached? It includes the
-/// Generation Test (golden/ALGORITHM.md 4.5): it also bounds the recursion and needs only the two ends, and figure 8 has
-/// no box for it.
+/// Generation Test (golden/ALGORITHM.md 4.5): it also bounds the recursion and needs only the two ends, and figure 8
+/// has no box for it.
 ///
 /// In:   TexCoordOperands. Out: TexCoordResult.
 /// Arithmetic: two compares of bit slices per axis; a maximum, an increment, a compare.
