@@ -15,7 +15,8 @@ constexpr int weight_bits(const Formats& f) {
 }
 
 /// Fraction bits that an interpolated code keeps: all of them up to these. A map of 8 bits is thus as finely stepped as
-/// one of 16 bits without a filter.
+/// one of 16 bits without a filter. (Decision: whole codes would show the steps of an 8-bit map; with all 24 fraction
+/// bits S * code would be 72 bits wide.)
 inline constexpr int most_code_fraction = 8;
 constexpr int code_fraction(const Formats& f) {
     const int all = 2 * weight_bits(f);
@@ -106,7 +107,8 @@ constexpr std::uint32_t map_code(const TexCoord& t, const std::uint64_t* entries
         interpolate(codes, bilinear_weights(t, formats), code_fraction(formats), formats));
 }
 
-/// The code of the texel under t, which is one of the entries.
+/// The code of the texel under t, which is one of the entries: vertices carry it (`one_texel_from_map`), since the
+/// Summed Height Test sums texels and decides as without a filter.
 constexpr std::uint16_t nearest_code(const TexCoord& t, const std::uint64_t* entries, const Formats& formats) {
     if (formats.filter == MapFilter::nearest)
         return static_cast<std::uint16_t>(entries[0]);

@@ -15,7 +15,8 @@ constexpr int bump_shift(const Formats& f) {
     return f.normal.fraction > bump_guard_bits ? f.normal.fraction - bump_guard_bits : 0;
 }
 
-/// Handedness of a vertex inserted on (i, j): that of the ends if they agree, else -1. Commutative.
+/// Handedness of a vertex inserted on (i, j): that of the ends if they agree, else -1 (a choice, for meshes that mirror
+/// their map). Commutative.
 constexpr std::int8_t inserted_handedness(std::int8_t handedness_i, std::int8_t handedness_j) {
     return handedness_i < handedness_j ? handedness_i : handedness_j;
 }

@@ -67,6 +67,9 @@ constexpr bool in_highlight(const Direction& n, const TestParameters& parameters
 /// HT (paper 5.1, golden/ALGORITHM.md 4.6): one of the edge's three displaced normals lies in the highlight, and they
 /// differ by more than a threshold finer than NT's. Uses NT's six differences; adds six compares, three dot products.
 /// All edges of a vertex agree on whether its N' lies in the highlight.
+/// (Decision: the paper gives no formula. Without the difference every edge in the highlight would split down to the
+/// map's texels, also of a flat patch, which its corners light correctly. A highlight between the three points is
+/// missed.)
 constexpr bool highlight_test(const Direction& i, const Direction& j, const Direction& ij,
                               const TestParameters& parameters) {
     return normals_differ(i, j, ij, parameters.highlight_normal_threshold) &&
@@ -117,7 +120,7 @@ constexpr bool tex_coord_test(const TexCoord& i, const TexCoord& j, const TexCoo
 }
 
 /// Generation of a vertex inserted on (i, j): the greater of the ends' plus one, at most 255 (reached only with GT
-/// switched off).
+/// switched off, an experiment in which nothing depends on generations): wider than its wires.
 constexpr std::uint8_t inserted_generation(std::uint8_t generation_i, std::uint8_t generation_j) {
     const std::uint8_t oldest = generation_i > generation_j ? generation_i : generation_j;
     return oldest == 255 ? oldest : static_cast<std::uint8_t>(oldest + 1);

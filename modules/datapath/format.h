@@ -33,8 +33,8 @@ enum class MapFilter : std::uint8_t {
 /// The formats of one design.
 struct Formats {
     Format position = Format::make_signed(32, 16);  ///< P, P', scale, bias
-    /// w, the distance from the eye: as wide as a position. The host places its binary point so that the farthest
-    /// vertex fits.
+    /// w, the distance from the eye, which may be much larger than the mesh: as wide as a position. The host places its
+    /// binary point so that the farthest vertex fits.
     Format view_distance = Format::make_signed(32, 16);
     Format normal = Format::make_signed(16, 14);  ///< N, T, N', N's, normal map
     /// t in texels, 0 to 2^integer inclusive: the last border of a map of 4096 texels is u = 4096.0, so the wires are
@@ -107,7 +107,9 @@ struct FormatLimits {
     static constexpr Range view_distance_shift{0, 31};
 };
 
-/// Number of saturated results per quantity.
+/// Number of saturated results per quantity: no overflow is silent, and a spilled triangle fits its queue entry.
+/// Normals, with two integer bits, N's, and w, whose binary point fits the farthest corner, cannot saturate; they are
+/// counted all the same.
 struct Saturations {
     std::uint64_t displaced_position = 0;
     std::uint64_t normal = 0;

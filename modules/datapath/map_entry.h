@@ -5,7 +5,7 @@
 
 namespace tessera::datapath {
 
-/// Bytes of an entry of `bits` bits.
+/// Bytes of an entry of `bits` bits: packed, so that the bytes in reports are those of a real design.
 constexpr std::uint32_t entry_bytes(int bits) {
     return static_cast<std::uint32_t>((bits + 7) / 8);
 }

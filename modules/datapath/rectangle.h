@@ -30,7 +30,8 @@ struct RectangleWidths : Intermediates {
 static_assert(fits_every_format<RectangleWidths>());
 
 /// Width |du| / 2 and height |dv| / 4, rounded down to whole texels, at least 1 and at most the map's
-/// (golden/ALGORITHM.md 4.2). Commutative, since it uses absolute differences.
+/// (golden/ALGORITHM.md 4.2): with empty rectangles an edge along an axis would never split. Commutative, since it uses
+/// absolute differences.
 constexpr RectangleSize rectangle_size(const TexCoord& a, const TexCoord& b, const MapGeometry& map,
                                        const Formats& formats) {
     const auto side = [](std::uint32_t difference, int shift, std::uint32_t size) {

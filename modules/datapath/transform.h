@@ -69,11 +69,12 @@ constexpr std::int32_t perspective_divide(std::int64_t numerator, std::uint64_t 
     return static_cast<std::int32_t>(saturate(round_shift(quotient, down), screen, saturated));
 }
 
-/// Transforms a displaced position from world to screen (the pipeline's existing Transform unit).
-/// The products are exact; the division is a reciprocal (relative error 2^-30.9) and a multiplication by the
-/// numerator's upper 30 bits, rounded to nearest; error at most 1/2 LSB + |result| * 2^-28. w is rounded to nearest in
-/// the view distance's format, which has no more fraction bits than the position's. x, y and w saturate, counted. On or
-/// behind the near plane (w <= near) there is no screen position: x = y = 0 and in_front is false.
+/// Transforms a displaced position from world to screen, as an existing Transform unit would (the paper assumes one):
+/// the viewport is part of the matrix. The products are exact; the division is a reciprocal (relative error 2^-30.9)
+/// and a multiplication by the numerator's upper 30 bits, rounded to nearest; error at most 1/2 LSB + |result| * 2^-28.
+/// w is rounded to nearest in the view distance's format, which has no more fraction bits than the position's. x, y and
+/// w saturate, counted. On or behind the near plane (w <= near) there is no screen position: x = y = 0 and in_front is
+/// false.
 constexpr ScreenPosition transform(const Position& p, const TransformParameters& parameters, const Formats& formats,
                                    Saturations& saturations) {
     const std::int64_t w = transform_row(parameters.row_w, p);

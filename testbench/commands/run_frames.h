@@ -16,7 +16,8 @@ using RunFrame =
 /// Runs the frames of a job (frame_job.h) in sequence, each by `run` in a process of its own: SystemC elaborates once
 /// per process, and a machine started anew gives, by construction, the results of a plain run of the frame's job. Data
 /// that the hardware would keep between frames (displacement map, Summed Height Table, most registers) appears in the
-/// figures of the host's traffic instead (host_traffic.h).
+/// figures of the host's traffic instead (host_traffic.h). (Decision: a machine that continued would need a reset of
+/// every counter, history and trace, and save only simulation time.)
 ///
 /// All frames are prepared before the first runs, so that an invalid one is refused at once. When the first frame is
 /// complete, it replaces everything that an earlier run left in the folder, frames and plain run. At the end,

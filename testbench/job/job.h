@@ -37,7 +37,8 @@ struct MapRange {
 
 /// One run of tessera, as described by a job file. Every key's unit, default, range and description are declared once,
 /// in job_keys.cpp, testbench/setup/setting_keys.h and modules/timing/design_keys.h. The defaults are the initialisers
-/// below and form the default job (the half donut on the plane of 18 triangles).
+/// below and form the default job (the half donut on the plane of 18 triangles, with vertices on whole texels). In it
+/// the View, Tex Coord and Generation Tests alone stop 3,905, 9,992 and 270 edges; the last is a safeguard.
 struct Job {
     struct Mesh {
         MeshSource source = MeshSource::plane;

@@ -12,9 +12,11 @@ namespace tessera {
 ///
 /// A lattice is a plane's base mesh whose inner grid lines lie at texel centres a power of two apart, so that midpoints
 /// lie at texel centres too, down to a spacing of one texel. The hardware reads the texel that contains t: a vertex at
-/// a texel's border reads a height up to half a texel away, one at a texel's centre its own. The outermost inner lines
-/// are half to one spacing away from the border. Written as OBJ. For a Rank Test, whose edges have even length, the
-/// lattice is that of mesh.source = "lattice", which extends beyond the map.
+/// a texel's border reads a height up to half a texel away, one at a texel's centre its own. On steep ground this is
+/// the error that remains if all edges split: on Crater Lake 3.2 m RMS with base vertices on borders a power of two
+/// apart, 1.2 m at centres. The outermost inner lines are half to one spacing away from the border. Written as OBJ. For
+/// a Rank Test, whose edges have even length, the lattice is that of mesh.source = "lattice", which extends beyond the
+/// map.
 struct BaseChoice {
     enum class Kind { job, plane, lattice } kind = Kind::job;
     std::int64_t columns = 0, rows = 0;  ///< quads

@@ -21,9 +21,9 @@ struct BakedMap {
     std::size_t overlaps = 0;   ///< texels whose centre lies inside several base triangles
 };
 
-/// Heights over the plane z = 0. Texel (x, y) of a quadric is at low + (x + 0.5, y + 0.5) / (width, height) of the
-/// domain; of a NURBS patch at that fraction of its parameters. Sides 1..4096. Throws InputError if no texel meets the
-/// quadric.
+/// Heights over the plane z = 0, of a quadric's upper root. Texel (x, y) of a quadric is at low + (x + 0.5, y + 0.5) /
+/// (width, height) of the domain; of a NURBS patch at that fraction of its parameters. Sides 1..4096. Where a quadric
+/// has no root the map gets its given floor, or its lowest height elsewhere. Throws InputError if no texel meets it.
 BakedMap bake_heights(const Surface& surface, int width, int height);
 
 /// A quadric over a base mesh: at each texel's centre the base triangle that covers it in texture space gives the
@@ -33,7 +33,7 @@ BakedMap bake_heights(const Surface& surface, int width, int height);
 /// - Texture coordinates are treated as in a run: set to the border on an axis that `map` clamps, periodic on an axis
 ///   that it repeats.
 /// - If several triangles cover a texel's centre the first in the mesh counts (overlaps), since a map holds only one
-///   surface.
+///   surface; so it cannot represent an overhang either.
 /// - A texel whose centre no triangle covers gets the value of the nearest covered texel, counted in texel steps, along
 ///   u first: vertices on a border of the covered part may read it.
 ///

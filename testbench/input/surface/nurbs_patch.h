@@ -10,7 +10,8 @@ namespace tessera {
 ///
 /// over knots_u[degree_u] <= u <= knots_u[columns], and v likewise. knots_u has columns + degree_u + 1 non-decreasing
 /// entries. Column i of row j is heights[j * columns + i], model units; row 0 is at the lowest v. Weights are positive.
-/// A Bezier patch has knots 0 ... 0 1 ... 1.
+/// A Bezier patch has knots 0 ... 0 1 ... 1. A rational quarter circle used as a height is not a circle: u and v would
+/// have to be rational, too.
 struct NurbsPatch {
     std::size_t degree_u = 1, degree_v = 1;
     std::size_t columns = 0, rows = 0;

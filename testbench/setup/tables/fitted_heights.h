@@ -16,9 +16,9 @@ using MeshOfMap = std::function<std::vector<TextureTriangle>(const QuantisedMap&
 /// - A vertex keeps within the codes of its texel and of those up to two away, and its own code counts as one more grid
 ///   point: least squares alone give needles where few grid points determine a vertex, as on any base but a lattice.
 /// - At the grid points, neither the largest distance from the mesh to the surface nor that from the surface to the
-///   mesh rises (the latter is not judged where base triangles share texels). Where it would, the heights are moved back
-///   towards the map's own. If a root mean square would rise, of these distances or of the vertical error, the map is
-///   returned as it is.
+///   mesh rises (the latter is not judged where base triangles share texels). Where it would, the heights are moved
+///   back towards the map's own. If a root mean square would rise, of these distances or of the vertical error, the map
+///   is returned as it is.
 ///
 /// (Decision: without any hardware the RMS error on Crater Lake falls by 12 % at the same triangles. The heights suit
 /// one mesh: where another view or other thresholds split other edges, the map's own are better.)
