@@ -23,9 +23,10 @@ struct DisplaceWidths : Intermediates {
 static_assert(fits_every_format<DisplaceWidths>());
 
 /// P' = P + (S * d + bias) * N (paper equation 1 with the scale of 5.1), d = code / 2^bits: a shift instead of a
-/// division. The highest code displaces by the full scale all the same, since the host scales S by 2^bits / (2^bits -
-/// 1). The code has code_fraction fraction bits (bilinear.h): none if it is a texel's. Rounding: S * d to nearest in
-/// the position's format, the product with N to nearest. Error at most 1/2 * (|N| + 1) LSB. Saturates, counted.
+/// division. The highest code displaces by the full scale all the same, as the host scales S by
+/// 2^bits / (2^bits - 1). The code has code_fraction fraction bits (bilinear.h): none if it is a texel's.
+/// Rounding: S * d to nearest in the position's format, the product with N to nearest. Error at most
+/// 1/2 * (|N| + 1) LSB. Saturates, counted.
 constexpr Position displace(const Position& p, const Direction& n, std::uint32_t code,
                             const DisplacementParameters& parameters, const Formats& formats,
                             Saturations& saturations) {

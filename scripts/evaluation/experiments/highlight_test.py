@@ -28,7 +28,7 @@ def measure(study):
                       [("Highlight Test", ""), ("Normal Test threshold", ""), ("triangles", ""), ("RMS error", "full scale"),
                        ("RMS error in the highlight", "full scale"), ("largest error", "full scale"),
                        ("density in the highlight", "triangles / texel"), ("density elsewhere", "triangles / texel")], rows)],
-        notes=["The paper names the test without a formula; tessera's definition is in modules/DECISIONS.md."])
+        notes=["The paper names the test without a formula; tessera's definition is in golden/ALGORITHM.md, 4.6."])
 
 
 EXPERIMENT = Experiment("highlight_test", "The Highlight Test", "Section 5.1",

@@ -13,7 +13,7 @@ namespace tessera {
 ///
 /// The tangent is zero where nothing defines it: no dp/du, directions that cancel (a pole), or triangles mirrored in
 /// texture space and others in one frame. Midpoints towards other vertices then have their tangent, which is right on
-/// both sides. Each of these is counted in a sentence of mesh.repairs.
+/// both sides; a triangle with three such corners has none. Each of these is counted in a sentence of mesh.repairs.
 ///
 /// (Decision: with two frames at a mirrored edge each side would be right, but the Normal Test compares world
 /// components, which do not mirror, and the sides decide differently: 8 open pieces along three such edges of a plane
