@@ -33,8 +33,8 @@ BezierPatches parse_bezier_patches(std::string_view text, const std::string& nam
 /// coordinates 0..1 on every patch; normals cross(dP/du, dP/dv), on the front side of the triangles.
 ///
 /// - At a border that is collapsed to a point, where dP/du is zero (the teapot has two), the normal is its limit from
-///   inside the patch. If there is no limit (a
-///   cusp), it is the smooth normal of smooth_normals.h; a repair counts these vertices.
+///   inside the patch. If there is no limit (a cusp), it is the smooth normal of smooth_normals.h; a repair counts
+///   these vertices.
 /// - Triangles of zero area, as at a collapsed border, are dropped and counted, with a repair.
 /// - Patches that share a border's control points have bit-identical vertex positions there, in either direction.
 ///   Normals within 1e-6 of each other at one position are made equal. Other anomalies of the surface are accepted with

@@ -21,9 +21,10 @@ struct BakedMap {
     std::size_t overlaps = 0;   ///< texels whose centre lies inside several base triangles
 };
 
-/// Heights over the plane z = 0, of a quadric's upper root. Texel (x, y) of a quadric is at low + (x + 0.5, y + 0.5) /
-/// (width, height) of the domain; of a NURBS patch at that fraction of its parameters. Sides 1..4096. Where a quadric
-/// has no root the map gets its given floor, or its lowest height elsewhere. Throws InputError if no texel meets it.
+/// Heights over the plane z = 0; of a quadric the upper ones by default. Texel (x, y) of a quadric is at low + (x +
+/// 0.5, y + 0.5) / (width, height) of the domain; of a NURBS patch at that fraction of its parameters. Sides 1..4096.
+/// Where a quadric has no root the map gets its given floor, or its lowest height elsewhere. Throws InputError if no
+/// texel meets it.
 BakedMap bake_heights(const Surface& surface, int width, int height);
 
 /// A quadric over a base mesh: at each texel's centre the base triangle that covers it in texture space gives the
