@@ -95,7 +95,7 @@ Pipeline::Pipeline(const sc_core::sc_module_name& name, const datapath::Register
         return new TessellationTests(unit_name, {clock, registers, design}, units, static_cast<unsigned>(number));
     });
     attach();
-    count_table_areas(design.timing);
+    set_table_areas();
     wire(units);
     see_where_ports_lead();
     SC_HAS_PROCESS(Pipeline);
@@ -106,20 +106,18 @@ Pipeline::Pipeline(const sc_core::sc_module_name& name, const datapath::Register
 
 /// A map's request reads one texel, or four with a bilinear filter; a rectangle's its corners: where it wraps on one axis
 /// six, on both nine.
-void Pipeline::count_table_areas(const Timing& timing) {
+void Pipeline::set_table_areas() {
     const datapath::Registers& r = registers_;
     const datapath::Formats& f = r.formats;
     const HeightTestKind& height = kind_of(f.height_test);
     const unsigned texels = datapath::map_entry_count(f);
     const auto across = [](datapath::AddressMode mode) { return mode == datapath::AddressMode::repeat ? 3u : 2u; };
     const unsigned corners = across(r.map.address_u) * across(r.map.address_v);
-    displacement_map.count_area(r.displacement_map, timing.displacement_map, f.displacement.bits, texels);
+    displacement_map.set_area(f.displacement.bits, texels);
     if (displacement_map_for_tests != nullptr)
-        displacement_map_for_tests->count_area(r.displacement_map, timing.displacement_map, f.displacement.bits,
-                                               height.codes);
-    normal_map.count_area(r.normal_map, timing.normal_map, 3 * f.normal.bits, texels);
-    height_table.count_area(r.height_table, timing.*height.table_timing, datapath::height_entry_bits(f),
-                            height.rectangles ? corners : 1);
+        displacement_map_for_tests->set_area(f.displacement.bits, height.codes);
+    normal_map.set_area(3 * f.normal.bits, texels);
+    height_table.set_area(datapath::height_entry_bits(f), height.rectangles ? corners : 1);
 }
 
 std::unique_ptr<TableCache> Pipeline::make_cache(const char* name, const datapath::TableLayout& layout,

@@ -147,7 +147,7 @@ class Pipeline : public sc_core::sc_module {
     std::unique_ptr<TableCache> make_cache(const char* name, const datapath::TableLayout& layout,
                                            const MemoryTiming& timing, const StallParameters& stalls);
     std::unique_ptr<DisplacementMap> make_second_side(const datapath::Registers& registers, const Design& design);
-    void count_table_areas(const Timing& timing);
+    void set_table_areas();
     void join(UnitFactory& factory, MemoryPort& port, TableMemory& table, TableCache* cache);
     void see_where_ports_lead();
     bool watch(MemoryPort& port);

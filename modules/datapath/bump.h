@@ -59,8 +59,8 @@ inline Multiplications bump_multiplications(const Formats& f) {
     const BumpWidths w{f};
     const int n = f.normal.bits;
     return Multiplications()
-        .add(6, n, n)
-        .add(6, n, n)
+        .add(6, n, n)  // N x T
+        .add(6, n, n)  // N_d.x T, N_d.z N
         .add(3, n, w.bitangent.bits)
         .add(normalise_multiplications(f, w.combined.bits));
 }

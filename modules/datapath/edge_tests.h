@@ -13,7 +13,7 @@
 namespace tessera::datapath {
 
 /// Bits of the Summed Height Test's threshold: at most 2^50, with `area` 2^18.
-inline constexpr int summed_height_threshold_bits = 51;
+inline constexpr int summed_height_threshold_bits = 51, area_threshold_bits = 19;
 
 struct EdgeTestWidths : Intermediates {
     using Intermediates::Intermediates;
@@ -144,8 +144,9 @@ inline Multiplications highlight_test_multiplications(const Formats& f) {
 /// With the area threshold; the sum threshold needs none.
 inline Multiplications summed_height_limit_multiplications(const Formats& f) {
     const RectangleWidths r{f};
-    constexpr int threshold = 19;  // at most 2^18
-    return Multiplications().add(1, r.width.bits, r.height.bits).add(1, threshold, EdgeTestWidths{f}.area.bits);
+    return Multiplications()
+        .add(1, r.width.bits, r.height.bits)
+        .add(1, area_threshold_bits, EdgeTestWidths{f}.area.bits);
 }
 
 }  // namespace tessera::datapath

@@ -9,18 +9,19 @@ namespace tessera::datapath {
 /// The widths of a multiplication's operands in bits, the wider first.
 using OperandWidths = std::pair<int, int>;
 
-/// The multiplications of a function, one element each. Next to each function that multiplies stands its list.
+/// The multiplications of a function f, one element each: f_multiplications, in its file. Those of addresses are not
+/// listed.
 class Multiplications {
   public:
     Multiplications& add(unsigned times, int a, int b) {
         for (unsigned k = 0; k < times; ++k)
-            widths_[count_++] = {std::max(a, b), std::min(a, b)};
+            widths_.at(count_++) = {std::max(a, b), std::min(a, b)};
         return *this;
     }
     Multiplications& add(const Multiplications& more, unsigned times = 1) {
         for (unsigned k = 0; k < times; ++k)
             for (const OperandWidths& widths : more)
-                widths_[count_++] = widths;
+                widths_.at(count_++) = widths;
         return *this;
     }
 

@@ -6,6 +6,24 @@
 #include "modules/stage/signals.h"
 
 namespace tessera {
+namespace {
+
+/// Enough to number them.
+std::uint64_t bits_for(std::uint64_t entries) {
+    std::uint64_t bits = 1;
+    while (std::uint64_t{1} << bits < entries)
+        ++bits;
+    return bits;
+}
+
+/// The entries of a table, or of its cache, once for each port.
+std::uint64_t copied_entries(const datapath::TableLayout& layout, const MemoryTiming& timing) {
+    const std::uint64_t entries = timing.cache.bytes > 0 ? CacheShape(timing.cache, layout).bytes() / layout.entry_bytes
+                                                         : std::uint64_t{layout.rows} * layout.columns;
+    return timing.ports * entries;
+}
+
+}  // namespace
 
 TableMemory::TableMemory(const sc_core::sc_module_name& name, CycleScheduler& clock,
                          const datapath::TableLayout& layout, const MemoryTiming& timing, const StallParameters& stalls,
@@ -14,6 +32,9 @@ TableMemory::TableMemory(const sc_core::sc_module_name& name, CycleScheduler& cl
       storage_(std::make_shared<Storage>(layout.base,
                                          layout.bytes() + (timing.cache.bytes == 0 ? 0 : timing.cache.line_bytes))),
       ports_(timing, layout),
+      waiting_requests_(std::uint64_t{timing.buffer} + timing.window),
+      copied_entries_(copied_entries(layout, timing)),
+      address_bits_(bits_for(std::uint64_t{layout.rows} * layout.columns)),
       channel_(timing.cache.bytes == 0 ? nullptr : off_chip) {
     storage_->all();
 }
@@ -23,19 +44,15 @@ TableMemory::TableMemory(const sc_core::sc_module_name& name, CycleScheduler& cl
     : MemoryServer(name, clock, timing.buffer, stalls),
       storage_(first_side.storage_),
       ports_(timing, layout),
+      waiting_requests_(std::uint64_t{timing.buffer} + timing.window),
+      copied_entries_(copied_entries(layout, timing)),
+      address_bits_(bits_for(std::uint64_t{layout.rows} * layout.columns)),
       channel_(nullptr) {}
 
-void TableMemory::count_area(const datapath::TableLayout& layout, const MemoryTiming& timing, int entry_bits,
-                             unsigned entries_read) {
-    const std::uint64_t all = std::uint64_t{layout.rows} * layout.columns;
-    const std::uint64_t entries =
-        timing.cache.bytes > 0 ? CacheShape(timing.cache, layout).bytes() / layout.entry_bytes : all;
-    std::uint64_t address_bits = 1;
-    while (std::uint64_t{1} << address_bits < all)
-        ++address_bits;
-    area_.register_bits = (timing.buffer + timing.window) * entries_read * address_bits;
-    area_.memory_bits = timing.ports * entries * static_cast<std::uint64_t>(entry_bits);
-    area_.ports = std::uint64_t{timing.ports} * timing.banks;
+void TableMemory::set_area(int entry_bits, unsigned entries_read) {
+    area_.register_bits = waiting_requests_ * entries_read * address_bits_;
+    area_.memory_bits = copied_entries_ * static_cast<std::uint64_t>(entry_bits);
+    area_.ports = ports_.slots_per_cycle();
 }
 
 void TableMemory::read(MemoryRequest& request) {

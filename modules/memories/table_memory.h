@@ -34,9 +34,8 @@ class TableMemory : public MemoryServer {
     TableMemory(const sc_core::sc_module_name& name, CycleScheduler& clock, const TableMemory& first_side,
                 const datapath::TableLayout& layout, const MemoryTiming& timing, const StallParameters& stalls);
 
-    /// Counts the memory's area: the bits of an entry, and the most entries that a request reads.
-    void count_area(const datapath::TableLayout& layout, const MemoryTiming& timing, int entry_bits,
-                    unsigned entries_read);
+    /// Sets the memory's area. entries_read: the most that one request reads.
+    void set_area(int entry_bits, unsigned entries_read);
 
     /// Sets the table's columns between runs. Its base, entry size and the memory's capacity do not change.
     void lay_out(std::uint32_t columns) { ports_.lay_out(columns); }
@@ -62,7 +61,8 @@ class TableMemory : public MemoryServer {
 
     std::shared_ptr<Storage> storage_;  // of both sides
     BankedPorts ports_;
-    Channel* channel_;  // null: on chip
+    const std::uint64_t waiting_requests_, copied_entries_, address_bits_;  // for the area
+    Channel* channel_;                                                      // null: on chip
     std::uint64_t channel_cycles_ = 0;
     std::uint64_t transactions_ = 0;
     std::uint64_t last_address_ = 0;  // of the request served last

@@ -16,9 +16,9 @@ namespace tessera {
 /// A unit's input. Functional mode: forwards b_transport to the unit. Timed mode: a buffer of `depth` items; while it
 /// is full, the next item waits and END_REQ is withheld. Checks the producer's phases.
 template <class Payload>
-class StreamInput : public tlm::tlm_target_socket<32, Stream<Payload>>,
-                    public tlm::tlm_fw_transport_if<Stream<Payload>>,
-                    private CycleInput {
+class StreamInput final : public tlm::tlm_target_socket<32, Stream<Payload>>,
+                          public tlm::tlm_fw_transport_if<Stream<Payload>>,
+                          private CycleInput {
     using Socket = tlm::tlm_target_socket<32, Stream<Payload>>;
 
   public:
@@ -44,8 +44,8 @@ class StreamInput : public tlm::tlm_target_socket<32, Stream<Payload>>,
         stalls_ = RandomStalls(stalls, this->name());
     }
 
-    /// Timed mode, for a unit that does nothing until each of its inputs has an item: it is called only then.
-    /// empty_inputs: the number of empty inputs; a counter shared and maintained by the inputs.
+    /// Timed mode, for inputs from which the unit takes one item each, together: an item calls the unit only if none of
+    /// them is then empty. empty_inputs: how many of them are empty; a counter shared and maintained by them.
     void waits_for_all(unsigned& empty_inputs) {
         empty_inputs_ = &empty_inputs;
         ++empty_inputs;
@@ -71,7 +71,7 @@ class StreamInput : public tlm::tlm_target_socket<32, Stream<Payload>>,
             admit();
     }
 
-    /// BEGIN_REQ, this many cycles from now. Returns true if the item is accepted at once.
+    /// BEGIN_REQ without TLM, this many cycles from now. Returns true if the item is accepted at once.
     bool offer(Payload& payload, std::uint64_t cycles = 0) {
         if (!pending_.empty())
             stream_protocol_error(this->name(), "BEGIN_REQ before END_REQ of the previous item", clock_);

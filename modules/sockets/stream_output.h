@@ -30,10 +30,12 @@ class StreamOutput : public tlm::tlm_initiator_socket<32, Stream<Payload>>,
 
     using Socket::bind;
     void bind(StreamInput<Payload>& input) {
-        if (const Interposer interposer = std::exchange(interposer_, nullptr))
+        if (const Interposer interposer = std::exchange(interposer_, nullptr)) {
             interposer(*this, input);
-        else
+        } else {
+            input_ = &input;
             Socket::bind(input);
+        }
     }
 
     /// Timed mode: `unit` is called when a delayed item is accepted.
@@ -68,10 +70,6 @@ class StreamOutput : public tlm::tlm_initiator_socket<32, Stream<Payload>>,
         if (wires_.formats != nullptr)
             packed_ = through_wires(payload);
         Payload& sent = wires_.formats != nullptr ? packed_ : payload;
-        if (!bound_) {
-            bound_ = true;
-            input_ = dynamic_cast<StreamInput<Payload>*>(this->get_base_port().get_interface());
-        }
         if (input_ != nullptr ? input_->offer(sent) : offer_by_tlm(sent))
             return true;
         on_offer_ = &sent;
@@ -133,8 +131,7 @@ class StreamOutput : public tlm::tlm_initiator_socket<32, Stream<Payload>>,
 
     CycleScheduler* clock_ = nullptr;
     CycleProcess* unit_ = nullptr;
-    bool bound_ = false;                     // input_ is known
-    StreamInput<Payload>* input_ = nullptr;  // bound with nothing in between: called without TLM; null: by TLM
+    StreamInput<Payload>* input_ = nullptr;  // bound by bind(), with nothing in between: called without TLM
     const Payload* on_offer_ = nullptr;
     Interposer interposer_;
     Wires wires_;

@@ -1,14 +1,16 @@
 #include "modules/stage/area.h"
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 namespace tessera {
 
 void Area::multiply(const datapath::Multiplications& multiplications, unsigned interval, unsigned copies) {
     std::vector<datapath::OperandWidths> widest(multiplications.begin(), multiplications.end());
-    std::sort(widest.begin(), widest.end(),
-              [](const auto& a, const auto& b) { return a.first * a.second > b.first * b.second; });
+    std::sort(widest.begin(), widest.end(), [](const auto& a, const auto& b) {
+        return std::pair(a.first * a.second, a) > std::pair(b.first * b.second, b);
+    });
     for (std::size_t k = 0; k < widest.size(); k += interval)
         multipliers[widest[k]] += copies;
 }

@@ -3,7 +3,7 @@
 #include <map>
 
 #include "modules/datapath/multiplications.h"
-#include "modules/sockets/packed_item.h"
+#include "modules/sockets/items.h"
 #include "modules/timing/design.h"
 
 namespace tessera {

@@ -18,9 +18,11 @@ class PerTriangle {
     bool full() const { return entries_.full(); }
     std::size_t size() const { return entries_.size(); }
 
+    std::size_t places() const { return entries_.capacity(); }
+
     /// Returns null if there is no state for this triangle.
     State* find(Tag tag) {
-        // Mostly the triangles' tags are consecutive.
+        // The tags are mostly consecutive: the first guess is right.
         if (!entries_.empty()) {
             const std::size_t guess = tag - entries_.front().tag;
             if (guess < entries_.size() && entries_.at(guess).tag == tag)

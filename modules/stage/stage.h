@@ -43,8 +43,8 @@ class Stage : public Unit {
                      Parts only);
     void reads_through(MemoryPort& port, unsigned most_requests);
     void may_wait() { may_wait_ = true; }
-    /// For the area, besides the input buffer and the items in the register stages: an item's multiplications, and bits
-    /// kept with it in each stage.
+    /// Area beyond what Stage counts itself (the input buffer, and the wider of the items in and out in each register
+    /// stage): an item's multiplications; bits kept with it in each register stage.
     void multiplies(const datapath::Multiplications& multiplications);
     void keeps(std::uint64_t bits);
 
@@ -76,8 +76,9 @@ class Stage : public Unit {
     std::uint64_t over_ports(Figure figure) const;
     void b_transport(In& item, sc_core::sc_time& delay);
     void read_entries(const In& item, Entries& entries, sc_core::sc_time& delay);
+    // Two copies: units without tables skip all that concerns requests.
     template <bool has_tables>
-    void step();
+    void step_with();
     template <bool has_tables>
     void start(std::uint64_t cycle);
     void take_answers(std::uint64_t cycle);

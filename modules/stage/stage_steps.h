@@ -155,7 +155,7 @@ void Stage<In, Out>::start(std::uint64_t cycle) {
     typename Machinery::Slot& slot = m.pipeline.start(cycle);
     slot.item = input_->front();
     activity_.item_in(cycle);
-    if constexpr (has_tables) {
+    if (has_tables) {
         slot.requests = slot.answered = 0;
         m.reads.clear();
         m.asked = m.asked_entries = 0;
@@ -198,14 +198,14 @@ void Stage<In, Out>::take_answers(std::uint64_t cycle) {
 template <class In, class Out>
 void Stage<In, Out>::step() {
     if (reads_tables())
-        step<true>();
+        step_with<true>();
     else
-        step<false>();
+        step_with<false>();
 }
 
 template <class In, class Out>
 template <bool has_tables>
-void Stage<In, Out>::step() {
+void Stage<In, Out>::step_with() {
     const std::uint64_t cycle = clock_.last_cycle();
     Machinery& m = *machinery_;
     if (has_tables)

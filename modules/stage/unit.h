@@ -4,7 +4,6 @@
 #include <string>
 #include <systemc>
 
-#include "modules/sockets/parts.h"
 #include "modules/stage/area.h"
 #include "modules/timing/activity.h"
 #include "modules/timing/cycle_scheduler.h"
@@ -26,6 +25,8 @@ class Unit : public CycleProcess, public sc_core::sc_module {
     /// Cycles that the unit's work occupies at its initiation interval or, for a memory, at its ports.
     virtual std::uint64_t occupied_cycles() const = 0;
 
+    /// For the design and the registers with which the machine was built: what frames switch on later (culling, the
+    /// Highlight Test) is not counted.
     const Area& area() const { return area_; }
 
     bool idle() const { return activity_.level() == 0; }
@@ -38,6 +39,7 @@ class Unit : public CycleProcess, public sc_core::sc_module {
     Unit(const sc_core::sc_module_name& name, CycleScheduler& clock) : sc_module(name), clock_(clock) {}
 
     std::uint64_t now() const { return clock_.cycle(); }
+    // Called in every step; without the attribute gcc does not inline it there.
     [[gnu::always_inline]] void wake_at(std::uint64_t cycle) {
         if (cycle != ~std::uint64_t{0})
             clock_.wake_at(*this, cycle);
@@ -45,7 +47,7 @@ class Unit : public CycleProcess, public sc_core::sc_module {
 
     CycleScheduler& clock_;
     Activity activity_;
-    Area area_;  // set when the unit is built
+    Area area_;  // of a table set by Pipeline, else in the constructor
 };
 
 /// occupied_cycles() of a unit that holds one item at a time and sends it on in parts: the first a latency after its

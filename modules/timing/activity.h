@@ -4,19 +4,15 @@
 #include <cstddef>
 #include <cstdint>
 #include <systemc>
-#include <utility>
 
 #include "modules/timing/state.h"
 
 namespace tessera {
 
-/// Called at the end of each stretch of cycles that a unit spends in one state.
+/// Observes the items that enter and leave a unit.
 class ActivityObserver {
   public:
-    /// [begin, end); by: the module that blocks the unit or that it waits for; may be null.
-    virtual void stretch(State state, const sc_core::sc_object* by, std::uint64_t begin, std::uint64_t end) = 0;
-    /// An item entered the unit (came) or left it.
-    virtual void item(std::uint64_t /*cycle*/, bool /*came*/) {}
+    virtual void item(std::uint64_t cycle, bool came) = 0;
     virtual ~ActivityObserver() = default;
 };
 
@@ -26,6 +22,7 @@ class ActivityObserver {
 /// from arrival to departure, off chip included.
 class Activity {
   public:
+    // Called in every step; without the attributes gcc does not inline them there.
     /// Sets the state at the end of `cycle`. It lasts until another is set. The last call in a cycle counts.
     [[gnu::always_inline]] void set(std::uint64_t cycle, State state, const sc_core::sc_object* by = nullptr) {
         if (state != state_ || by != by_)
@@ -82,6 +79,7 @@ class Activity {
     void observe(ActivityObserver* observer) { observer_ = observer; }
 
   private:
+    // Rare: kept out of the callers' code.
     [[gnu::noinline]] void change(std::uint64_t cycle, State state, const sc_core::sc_object* by) {
         close(cycle);
         state_ = state;
@@ -94,8 +92,6 @@ class Activity {
         cycles_[static_cast<std::size_t>(state_)] += length;
         if (by_ != nullptr)
             present_share().cycles += length;
-        if (observer_ != nullptr)
-            observer_->stretch(state_, by_, since_, cycle);
         since_ = cycle;
     }
     Share& present_share() {

@@ -41,8 +41,10 @@ CycleScheduler::CycleScheduler(const sc_core::sc_module_name& name, const sc_cor
 }
 
 void CycleScheduler::attach(CycleProcess& unit) {
-    if (attached_ == most_units)
+    if (attached_ == most_units) {
         SC_REPORT_ERROR("tessera/clock", "more than 64 units on one clock");
+        return;
+    }
     unit.bit_ = std::uint64_t{1} << attached_;
     units_[attached_++] = &unit;
 }
@@ -53,8 +55,8 @@ void CycleScheduler::wake_far(const CycleProcess& unit, std::uint64_t cycle) {
 }
 
 void CycleScheduler::wake_from_outside(const CycleProcess& unit, std::uint64_t cycle) {
-    // The table starts at the last cycle in which processes were called.
-    cycle = std::max(cycle, first_cycle_not_before_now());
+    // The table starts at the last cycle in which processes were called, which may be ahead of simulated time.
+    cycle = std::max({cycle, first_cycle_not_before_now(), cycle_});
     if (cycle - cycle_ < span) {
         due_[cycle % span] |= unit.bit_;
         last_due_ = std::max(last_due_, cycle);
@@ -129,12 +131,13 @@ bool CycleScheduler::begin_observing() {
     return observer_ != nullptr;
 }
 
-/// Whether nothing else will happen until the next cycle, `cycles` after the present one.
+/// Whether the kernel had nothing to do until the next cycle, `cycles` after the present one, when it was last asked:
+/// asking is slow.
 bool CycleScheduler::may_run_ahead(std::uint64_t cycles) {
     if (observer_ != nullptr)
         return false;
-    if (until_asked_ == 0) {  // asking is slow
-        until_asked_ = 16;
+    if (until_asked_ == 0) {
+        until_asked_ = cycles_between_questions;
         if (sc_core::sc_pending_activity_at_current_time())
             return false;
         next_event_ =
@@ -159,8 +162,7 @@ bool CycleScheduler::run_cycle() {
     running_ = true;
     scheduled_ = false;
     ++cycles_without_progress_;
-    if (!far_.empty())
-        take_far();
+    take_far();
     const std::uint64_t place = cycle_ % span;
     due_now_ = due_[place];
     due_[place] = 0;

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <systemc>
@@ -123,7 +124,7 @@ class CycleScheduler : public sc_core::sc_module {
             due_now_ |= unit.bit_;
         } else if (cycle - cycle_ < span) {
             due_[cycle % span] |= unit.bit_;
-            last_due_ = cycle > last_due_ ? cycle : last_due_;
+            last_due_ = std::max(last_due_, cycle);
         } else {
             wake_far(unit, cycle);
         }
@@ -158,9 +159,10 @@ class CycleScheduler : public sc_core::sc_module {
     void halt() { halted_ = true; }
     bool halted() const { return halted_; }
 
-    /// While the kernel has nothing else to do, runs up to `most` further cycles without returning to it. Meanwhile
-    /// simulated time does not advance; a stop takes effect afterwards. For simulations in which only the machine's
-    /// units depend on time. Has no effect while an observer is attached.
+    /// While the kernel has nothing else to do, runs up to `most` further cycles without returning to it. The kernel is
+    /// asked every cycles_between_questions cycles: an event that a step notifies takes effect that much later at most.
+    /// Meanwhile simulated time does not advance; a stop takes effect afterwards. For simulations in which only the
+    /// machine's units depend on time. Has no effect while an observer is attached.
     void run_ahead(unsigned most) { most_ahead_ = most; }
 
     /// Call progress() when work is completed (a triangle decided, or lit). The clock halts once processes have been
@@ -222,12 +224,13 @@ class CycleScheduler : public sc_core::sc_module {
     std::array<CycleProcess*, most_units> units_{};
     std::size_t attached_ = 0;
     std::array<std::uint64_t, span> due_{};  // by cycle modulo span: one bit per unit
-    std::uint64_t last_due_ = 0;             // the last cycle with a bit in due_
+    std::uint64_t last_due_ = 0;             // no later cycle has a bit in due_
     std::vector<Far> far_;                   // a heap, earliest first
     std::uint64_t due_now_ = 0;
     std::uint64_t cycle_ = 0;
     std::uint64_t next_tick_ = 0;
     unsigned most_ahead_ = 0;
+    static constexpr unsigned cycles_between_questions = 16;
     unsigned until_asked_ = 0;      // cycles until the kernel is asked again
     std::uint64_t next_event_ = 0;  // its next event, as time after the tick
     sc_core::sc_time lag_;          // from simulated time to the beginning of the present cycle

@@ -77,7 +77,8 @@ GetTriangle::GetTriangle(const sc_core::sc_module_name& name, const UnitContext&
         tests_[k].takes = parts_for_tests(k, context.design.tests_units);
     }
     const ItemWidths bits(context);
-    area_.register_bits = std::uint64_t{2} * timing_.buffer * bits.of<datapath::Triangle>() + bits.of<TakenTriangle>();
+    area_.register_bits +=
+        (from_host.depth() + from_triangle_queue.depth()) * bits.of<datapath::Triangle>() + bits.of<TakenTriangle>();
 }
 
 TakenTriangle GetTriangle::taken(const datapath::Triangle& triangle) {

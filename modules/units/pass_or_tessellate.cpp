@@ -24,7 +24,7 @@ PassOrTessellate::PassOrTessellate(const sc_core::sc_module_name& name, const Un
     }
     to_tessellation.clocked_by(context, *this);
     const ItemWidths bits(context);
-    area_.register_bits =
+    area_.register_bits +=
         from_get_triangle.depth() * bits.of<TakenTriangle>() + bits.of<ScreenPoint>() +
         std::uint64_t{3} * timing_.buffer * bits.of<TestedEdge>() +
         (timing_.buffer + pipeline_.capacity()) * (static_cast<unsigned>(bits.tag) + bits.of<DecidedTriangle>());

@@ -50,7 +50,6 @@ class PassOrTessellate : public DecidingUnit {
     std::string describe_contents() const override;
     std::uint64_t occupied_cycles() const override { return activity_.items_out() * timing_.interval; }
     void trace_signals(Signals& signals) const override;
-    /// The triangle decided last.
 
   private:
     /// A decided triangle on its way out, for the unit it goes to.

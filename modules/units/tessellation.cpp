@@ -17,7 +17,7 @@ Tessellation::Tessellation(const sc_core::sc_module_name& name, const UnitContex
     from_pass_or_tessellate.register_b_transport<&Tessellation::b_transport>(*this);
     from_pass_or_tessellate.clocked_by(clock_, *this, timing_.buffer, context.timing().stalls);
     to_triangle_queue.clocked_by(context, *this);
-    area_.register_bits = (timing_.buffer + 1) * ItemWidths(context).of<DecidedTriangle>();
+    area_.register_bits += (timing_.buffer + 1) * ItemWidths(context).of<DecidedTriangle>();
 }
 
 void Tessellation::b_transport(DecidedTriangle& decided, sc_core::sc_time& delay) {

@@ -34,7 +34,7 @@ TriangleQueue::TriangleQueue(const sc_core::sc_module_name& name, const UnitCont
     SC_HAS_PROCESS(TriangleQueue);
     SC_THREAD(send_waiting);
     const std::uint64_t triangle = ItemWidths(context).of<datapath::Triangle>();
-    area_.register_bits = timing_.buffer * triangle;
+    area_.register_bits += timing_.buffer * triangle;
     area_.memory_bits = design_.capacity * triangle;
 }
 

@@ -14,8 +14,8 @@ CollectTests::CollectTests(const sc_core::sc_module_name& name, const UnitContex
     add_input(context, from_view_test);
     to_pass_or_tessellate.clocked_by(context, *this);
     const ItemWidths bits(context);
-    area_.register_bits = context.timing().results_buffer * (bits.of<HeightResult>() + bits.of<NormalResult>() +
-                                                             bits.of<TexCoordResult>() + bits.of<ViewResult>());
+    area_.register_bits += context.timing().results_buffer * (bits.of<HeightResult>() + bits.of<NormalResult>() +
+                                                              bits.of<TexCoordResult>() + bits.of<ViewResult>());
 }
 
 template <class Result>

@@ -25,10 +25,10 @@ SequencingUnit::SequencingUnit(const sc_core::sc_module_name& name, const UnitCo
     const Timing& t = context.timing();
     const std::uint64_t lanes = context.design.edge_lanes, normal_tests = context.design.normal_tests;
     const std::uint64_t operands = bits.of<NormalOperands>() + bits.of<HeightOperands>();
-    area_.register_bits = t.results_buffer * (bits.of<HeightResult>() + normal_tests * bits.of<NormalResult>() +
-                                              lanes * (bits.of<TexCoordResult>() + bits.of<ViewResult>() + operands)) +
-                          normal_tests * bits.of<NormalOperands>() +
-                          t.edges_in_sequence * (operands + bits.of<TestedEdge>());
+    area_.register_bits += t.results_buffer * (bits.of<HeightResult>() + normal_tests * bits.of<NormalResult>() +
+                                               lanes * (bits.of<TexCoordResult>() + bits.of<ViewResult>() + operands)) +
+                           normal_tests * bits.of<NormalOperands>() +
+                           t.edges_in_sequence * (operands + bits.of<TestedEdge>());
 }
 
 template <class Item>

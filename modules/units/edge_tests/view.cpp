@@ -23,8 +23,7 @@ ViewTest::ViewTest(const sc_core::sc_module_name& name, const UnitContext& conte
     const datapath::Formats& f = registers_.formats;
     const int screen = 2 * f.screen.bits + (f.distances ? 2 : 1) * f.view_distance.bits + 1;
     const auto corners = static_cast<unsigned>(3 + 3 * screen + tag_bits(context.design));
-    const std::uint64_t places = std::uint64_t{context.timing().pass_or_tessellate.buffer} + 2;
-    area_.register_bits += ItemWidths(context).of<ScreenCorner>() + places * corners;
+    area_.register_bits += ItemWidths(context).of<ScreenCorner>() + corners_.places() * corners;
 }
 
 void ViewTest::end_of_elaboration() {

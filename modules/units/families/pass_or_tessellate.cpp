@@ -23,9 +23,10 @@ FamilyPassOrTessellate::FamilyPassOrTessellate(const sc_core::sc_module_name& na
     to_triangle_queue.clocked_by(context, *this);
     const ItemWidths bits(context);
     constexpr std::uint64_t most_edges = 9;
-    area_.register_bits = bits.of<Family>() + context.design.edge_lanes * bits.of<TestedEdge>() +
-                          timing_.buffer * (bits.of<Family>() + most_edges * bits.of<TestedEdge>()) +
-                          lit_.capacity() * (bits.of<TriangleToLight>() + bits.of<datapath::Triangle>());
+    area_.register_bits += bits.of<Family>() + context.design.edge_lanes * bits.of<TestedEdge>() +
+                           timing_.buffer * (bits.of<Family>() + most_edges * bits.of<TestedEdge>()) +
+                           lit_.capacity() * bits.of<TriangleToLight>() +
+                           queued_.capacity() * bits.of<datapath::Triangle>();
 }
 
 void FamilyPassOrTessellate::end_of_elaboration() {

@@ -34,10 +34,10 @@ FamilySequenceTests::FamilySequenceTests(const sc_core::sc_module_name& name, co
         add_input(context, from_view_test[lane]);
         to_pass_or_tessellate[lane].clocked_by(context, *this);
         // An edge is taken when all four have arrived.
-        normal_operands[lane].waits_for_all(lanes_[lane].missing);
-        height_operands[lane].waits_for_all(lanes_[lane].missing);
-        from_tex_coord_test[lane].waits_for_all(lanes_[lane].missing);
-        from_view_test[lane].waits_for_all(lanes_[lane].missing);
+        normal_operands[lane].waits_for_all(lanes_[lane].empty_inputs);
+        height_operands[lane].waits_for_all(lanes_[lane].empty_inputs);
+        from_tex_coord_test[lane].waits_for_all(lanes_[lane].empty_inputs);
+        from_view_test[lane].waits_for_all(lanes_[lane].empty_inputs);
     }
     for (std::size_t k = 0; k < normals_.size(); ++k) {
         normals_[k].in_test = Ring<Edge>(places_);
@@ -58,8 +58,7 @@ void FamilySequenceTests::decided(const Edge& edge, Next next) {
 
 /// Accepts an edge whose cheap tests have decided, one per cycle and lane.
 bool FamilySequenceTests::take_edge(std::size_t lane, std::uint64_t cycle) {
-    if (taken_ == places_ || normal_operands[lane].empty() || height_operands[lane].empty() ||
-        from_tex_coord_test[lane].empty() || from_view_test[lane].empty())
+    if (lanes_[lane].empty_inputs > 0 || taken_ == places_)
         return false;
     if (lanes_[lane].next_in > cycle) {
         wake_at(lanes_[lane].next_in);
@@ -163,7 +162,7 @@ void FamilySequenceTests::step() {
         changed = take_results();
         changed = leave(cycle) || changed;
         for (std::size_t lane = 0; lane < lanes_.size(); ++lane)
-            changed = (lanes_[lane].missing == 0 && take_edge(lane, cycle)) || changed;
+            changed = take_edge(lane, cycle) || changed;
         changed = send_to_normal_test() || changed;
         changed = send_to_summed_height_test() || changed;
     }

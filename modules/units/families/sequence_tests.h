@@ -45,7 +45,7 @@ class FamilySequenceTests : public SequencingUnit {
 
   private:
     struct Lane {
-        unsigned missing = 0;  // empty inputs
+        unsigned empty_inputs = 0;  // of four; without one an edge can be taken
         std::uint64_t next_in = 0, next_out = 0;
         TestedEdge leaving;
     };

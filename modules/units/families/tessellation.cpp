@@ -25,9 +25,9 @@ FamilyTessellation::FamilyTessellation(const sc_core::sc_module_name& name, cons
     }
     const ItemWidths bits(context);
     constexpr std::uint64_t midpoints = 3;
-    area_.register_bits = (from_get_triangle.depth() + 1) * bits.of<TakenTriangle>() +
-                          (timing_.buffer + midpoints) * bits.of<ScreenPoint>() + bits.of<Family>() +
-                          lanes_.size() * bits.of<TestOperands>();
+    area_.register_bits += (from_get_triangle.depth() + 1) * bits.of<TakenTriangle>() +
+                           (timing_.buffer + midpoints) * bits.of<ScreenPoint>() + bits.of<Family>() +
+                           lanes_.size() * bits.of<TestOperands>();
 }
 
 void FamilyTessellation::end_of_elaboration() {

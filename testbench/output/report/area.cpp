@@ -18,7 +18,7 @@ std::string_view kind_name(const Unit& unit) {
 void add(std::vector<UnitArea>& all, const std::vector<Unit*>& units) {
     for (const Unit* unit : units) {
         const Area& area = unit->area();
-        if (area.register_bits == 0 && area.memory_bits == 0)
+        if (area.multipliers.empty() && area.register_bits == 0 && area.memory_bits == 0)
             continue;
         const std::string_view name = kind_name(*unit);
         const auto found = std::find_if(all.begin(), all.end(), [&](const UnitArea& its) { return its.name == name; });

@@ -12,7 +12,7 @@ struct UnitArea : Area {
     std::string name;  ///< "transform"
 };
 
-/// In the order of the figures. Kinds without hardware of their own are left out.
+/// In the order of the figures. Kinds without hardware are left out; a cache counts as its table.
 std::vector<UnitArea> area_of(const std::vector<Unit*>& units);
 
 /// The area of a run's design, all machines together.

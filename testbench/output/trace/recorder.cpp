@@ -1,15 +1,8 @@
 #include "testbench/output/trace/recorder.h"
 
 #include <algorithm>
-#include <array>
 
 namespace tessera {
-
-const char* state_name(State state) {
-    constexpr std::array names{"starved", "busy", "waiting for memory", "blocked"};
-    static_assert(names.size() == states);
-    return names.at(static_cast<std::size_t>(state));
-}
 
 Recorder::Recorder(Pipeline& pipeline, VcdWriter& vcd, TraceWindow window, const std::vector<const Unit*>& units)
     : pipeline_(pipeline),

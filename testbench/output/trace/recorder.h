@@ -1,6 +1,5 @@
 #pragma once
 #include <cstdint>
-#include <systemc>
 #include <vector>
 
 #include "modules/pipeline.h"
@@ -48,8 +47,5 @@ class Recorder : public CycleObserver {
     bool began_ = false;
     std::uint64_t next_cycle_ = 0;  // the first cycle with incomplete waveforms
 };
-
-/// Text used in waveforms/states.txt: "busy", "waiting for memory", ...
-const char* state_name(State state);
 
 }  // namespace tessera

@@ -114,6 +114,7 @@ std::vector<RecordedPass> PassRecord::take_passes() {
         pass.facts.way = finished->way;
         pass.triangle = finished++->triangle;
     }
+    finished_.clear();
     return std::exchange(passes_, {});
 }
 

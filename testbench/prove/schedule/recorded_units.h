@@ -16,7 +16,7 @@ namespace tessera::schedule {
 /// A pass of a triangle through a clocked machine: about 1 KB.
 struct RecordedPass {
     Facts facts;
-    std::uint64_t triangle = 0;               ///< hash of its corners
+    std::uint64_t triangle = 0;               ///< hash of its base triangle and its corners
     std::array<std::uint64_t, 4> children{};  ///< of each child, in the order in which Tessellation sends them
 
     bool is_base() const { return (facts.parts & vertex_parts) != 0; }

@@ -29,7 +29,6 @@ constexpr unsigned most_seconds = 600;
 /// Digests of the cycles in which items entered and left a unit.
 class ItemTimes : public ActivityObserver, public schedule::ItemObserver {
   public:
-    void stretch(State, const sc_core::sc_object*, std::uint64_t, std::uint64_t) override {}
     void item(std::uint64_t cycle, bool came) override {
         std::uint64_t& digest = came ? came_ : left_;
         digest = mix_hash(digest, cycle);
