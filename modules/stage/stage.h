@@ -46,7 +46,7 @@ class Stage : public Unit {
     /// Area beyond what Stage counts itself (the input buffer, and the wider of the items in and out in each register
     /// stage): an item's multiplications; bits kept with it in each register stage.
     void multiplies(const datapath::Multiplications& multiplications);
-    void keeps(std::uint64_t bits);
+    void keeps(int bits);
 
     /// For a unit that calls may_wait() in its constructor. Returns false if the item waits for another input; in
     /// functional mode that is an error.
@@ -77,9 +77,9 @@ class Stage : public Unit {
     void b_transport(In& item, sc_core::sc_time& delay);
     void read_entries(const In& item, Entries& entries, sc_core::sc_time& delay);
     // Two copies: units without tables skip all that concerns requests.
-    template <bool has_tables>
+    template <bool HasTables>
     void step_with();
-    template <bool has_tables>
+    template <bool HasTables>
     void start(std::uint64_t cycle);
     void take_answers(std::uint64_t cycle);
 

@@ -74,8 +74,8 @@ Stage<In, Out>::Stage(const sc_core::sc_module_name& name, const UnitContext& co
       latency_(clock_.period() * timing.latency),
       machinery_(std::make_shared<Machinery>(timing, servers, memory_latency)) {
     const ItemWidths widths(context);
-    area_.register_bits = timing.buffer * widths.of<In>();
-    keeps(std::max(widths.of<In>(), widths.of<Out>()));
+    area_.register_bits =
+        timing.buffer * widths.of<In>() + machinery_->pipeline.capacity() * std::max(widths.of<In>(), widths.of<Out>());
 }
 
 template <class In, class Out>
@@ -116,8 +116,8 @@ void Stage<In, Out>::multiplies(const datapath::Multiplications& multiplications
 }
 
 template <class In, class Out>
-void Stage<In, Out>::keeps(std::uint64_t bits) {
-    area_.register_bits += machinery_->pipeline.capacity() * bits;
+void Stage<In, Out>::keeps(int bits) {
+    area_.register_bits += machinery_->pipeline.capacity() * static_cast<std::uint64_t>(bits);
 }
 
 template <class In, class Out>
@@ -149,13 +149,13 @@ void Stage<In, Out>::read_entries(const In& item, Entries& entries, sc_core::sc_
 }
 
 template <class In, class Out>
-template <bool has_tables>
+template <bool HasTables>
 void Stage<In, Out>::start(std::uint64_t cycle) {
     Machinery& m = *machinery_;
     typename Machinery::Slot& slot = m.pipeline.start(cycle);
     slot.item = input_->front();
     activity_.item_in(cycle);
-    if (has_tables) {
+    if (HasTables) {
         slot.requests = slot.answered = 0;
         m.reads.clear();
         m.asked = m.asked_entries = 0;
@@ -167,7 +167,7 @@ void Stage<In, Out>::start(std::uint64_t cycle) {
             slot.count[k] = static_cast<std::uint8_t>(m.reads.count(k));
         }
     }
-    if (has_tables && slot.requests > 0)
+    if (HasTables && slot.requests > 0)
         m.pipeline.finish(m.pipeline.size() - 1, never);
     else
         slot.result = process(slot.item, m.entries);
@@ -204,30 +204,30 @@ void Stage<In, Out>::step() {
 }
 
 template <class In, class Out>
-template <bool has_tables>
+template <bool HasTables>
 void Stage<In, Out>::step_with() {
     const std::uint64_t cycle = clock_.last_cycle();
     Machinery& m = *machinery_;
-    if (has_tables)
+    if (HasTables)
         take_answers(cycle);
     while (m.pipeline.front_finished(cycle) && m.fork.deliver(m.pipeline.front().result)) {
         m.pipeline.pop();
-        if (has_tables)
+        if (HasTables)
             --m.waiting;
         activity_.item_out(cycle);
     }
     bool lacking = false;
-    while ((!has_tables || m.ask()) && !input_->empty() && m.pipeline.may_start(cycle)) {
+    while ((!HasTables || m.ask()) && !input_->empty() && m.pipeline.may_start(cycle)) {
         lacking = may_wait_ && !may_start(input_->front());
         if (lacking)
             break;
-        start<has_tables>(cycle);
+        start<HasTables>(cycle);
     }
-    if (has_tables)
+    if (HasTables)
         m.skip_processed();
     if (m.pipeline.front_finished(cycle))
         activity_.set(cycle, State::blocked, m.fork.blocked_by());
-    else if (has_tables && m.waiting == 0 && !m.pipeline.empty())
+    else if (HasTables && m.waiting == 0 && !m.pipeline.empty())
         activity_.set(cycle, State::waiting_for_memory, m.awaited().memory());
     else if (!m.pipeline.empty() || (!lacking && !input_->empty()))
         activity_.set(cycle, State::busy);

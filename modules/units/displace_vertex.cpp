@@ -22,11 +22,11 @@ DisplaceVertex::DisplaceVertex(const sc_core::sc_module_name& name, const UnitCo
     }
     const datapath::Formats& f = registers_.formats;
     const datapath::Multiplications interpolates = interpolate_multiplications(f);
-    const auto entries = map_entry_count(f);
+    const int entries = static_cast<int>(map_entry_count(f));
     const datapath::Multiplications for_direction =
         f.families ? bump_multiplications(f).add(interpolates, 3) : normalise_multiplications(f, f.normal.bits);
     multiplies(displace_multiplications(f).add(interpolates).add(for_direction));
-    keeps(entries * static_cast<unsigned>(f.displacement.bits + (f.families ? 3 * f.normal.bits : 0)));
+    keeps(entries * (f.displacement.bits + (f.families ? 3 * f.normal.bits : 0)));
 }
 
 void DisplaceVertex::reads(const BasePoint& point, Reads& reads) const {

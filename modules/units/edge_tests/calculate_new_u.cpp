@@ -38,7 +38,7 @@ CalculateNewU::CalculateNewU(const sc_core::sc_module_name& name, const UnitCont
     delivers_to(context, to_tex_coord_test, for_tex_coord_test, edge_parts);
     delivers_to(context, to_summed_height_test, for_summed_height_test, edge_parts);
     delivers_to(context, to_view_test, for_view_test, edge_parts);
-    keeps(2 * static_cast<unsigned>(context.registers.formats.texture.bits));
+    keeps(2 * context.registers.formats.texture.bits);
 }
 
 EdgeToTest CalculateNewU::process(const TestOperands& part, const Entries&) {

@@ -18,8 +18,8 @@ HeightTestUnit::HeightTestUnit(const sc_core::sc_module_name& name, const UnitCo
                                  context.design.direct_memory);
         reads_through(*displacement_map, 1);
     }
-    keeps(kind_of(registers_.formats.height_test).requests *
-          static_cast<unsigned>(datapath::height_entry_bits(registers_.formats)));
+    keeps(static_cast<int>(kind_of(registers_.formats.height_test).requests) *
+          datapath::height_entry_bits(registers_.formats));
 }
 
 }  // namespace tessera

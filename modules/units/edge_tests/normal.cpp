@@ -36,7 +36,7 @@ NormalTest::NormalTest(const sc_core::sc_module_name& name, const UnitContext& c
     if (registers_.tests.highlight_test)
         all.add(highlight_test_multiplications(f));
     multiplies(all);
-    keeps(map_entry_count(f) * 3 * static_cast<unsigned>(f.normal.bits));
+    keeps(static_cast<int>(map_entry_count(f)) * 3 * f.normal.bits);
     if (!f.families)  // corners
         area_.register_bits += static_cast<unsigned>(3 * (1 + 3 * f.normal.bits) + tag_bits(context.design));
 }

@@ -84,13 +84,13 @@ void PassRecord::observe(HostedMachine& machine) {
 }
 
 void PassRecord::Decisions::write(const datapath::TrianglePass& decided) {
-    RecordedPass& pass = record_.pass(decided.number);
+    RecordedPass& pass = record.pass(decided.number);
     pass.triangle = hash_of(decided.triangle);
     pass.facts.tested = true;
     if (decided.split == 0 && decided.new_vertices == 0)
         return;  // it is finished
     pass.facts.way = Way::tessellation;
-    const datapath::Registers& registers = *record_.registers_;
+    const datapath::Registers& registers = *record.registers_;
     datapath::Saturations ignored;
     tessellate(decided, registers.triangulation, registers.formats, ignored,
                [&](const datapath::Triangle& child) { pass.children[pass.facts.children++] = hash_of(child); });
@@ -99,8 +99,8 @@ void PassRecord::Decisions::write(const datapath::TrianglePass& decided) {
 void PassRecord::Finished::write(const datapath::Triangle& triangle) {
     const auto& v = triangle.vertices;
     const bool dropped =
-        record_.registers_->back_face_culling && datapath::faces_away(v[0].screen, v[1].screen, v[2].screen);
-    record_.finished_.push_back({dropped ? Way::dropped : Way::lighting, hash_of(triangle)});
+        record.registers_->back_face_culling && datapath::faces_away(v[0].screen, v[1].screen, v[2].screen);
+    record.finished_.push_back({dropped ? Way::dropped : Way::lighting, hash_of(triangle)});
 }
 
 std::vector<RecordedPass> PassRecord::take_passes() {

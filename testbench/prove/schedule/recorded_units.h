@@ -41,14 +41,14 @@ class PassRecord {
     RecordedPass& pass(std::uint32_t number);
 
     struct Decisions : tlm::tlm_analysis_if<datapath::TrianglePass> {
-        explicit Decisions(PassRecord& record) : record_(record) {}
+        explicit Decisions(PassRecord& its_record) : record(its_record) {}
         void write(const datapath::TrianglePass& pass) override;
-        PassRecord& record_;
+        PassRecord& record;
     };
     struct Finished : tlm::tlm_analysis_if<datapath::Triangle> {
-        explicit Finished(PassRecord& record) : record_(record) {}
+        explicit Finished(PassRecord& its_record) : record(its_record) {}
         void write(const datapath::Triangle& triangle) override;
-        PassRecord& record_;
+        PassRecord& record;
     };
 
     std::vector<RecordedPass> passes_;
