@@ -67,6 +67,41 @@ Units units_of(Pipeline& machine) {
     return units;
 }
 
+// The lines of both texts.
+
+template <class CyclesIn>
+std::string unit_line(const Unit& unit, std::uint64_t items, const ItemTimes& times, std::uint64_t most,
+                      std::uint64_t item_cycles, CyclesIn cycles_in) {
+    std::string text = fmt::format("{}: items {} in cycles {}, at most {}, item cycles {}", unit.name(), items,
+                                   times.text(), most, item_cycles);
+    for (std::size_t state = 0; state < states; ++state)
+        text += fmt::format(", {}", cycles_in(static_cast<State>(state)));
+    return text;
+}
+
+std::string share_text(State state, const char* by, std::uint64_t cycles) {
+    return fmt::format(", {} {} {}", static_cast<int>(state), by, cycles);
+}
+
+std::string memory_line(const Unit& memory, std::uint64_t entries, std::uint64_t slots, std::uint64_t held_up,
+                        std::uint64_t occupied) {
+    return fmt::format("{}: {} entries, {} slots, {} cycles held up, {} occupied\n", memory.name(), entries, slots,
+                       held_up, occupied);
+}
+
+std::string parts_line(std::uint64_t sent, std::uint64_t taken, std::uint64_t corners, std::uint64_t edges,
+                       std::uint64_t ahead) {
+    return fmt::format("parts {}, {} taken, {} corners, {} edges, {} ahead of parts\n", sent, taken, corners, edges,
+                       ahead);
+}
+
+std::string levels_line(std::uint64_t most, const LevelHistory& history) {
+    std::string text = fmt::format("queue: at most {}, each {} cycles:", most, history.stretch());
+    for (const std::uint64_t level : history.highest())
+        text += fmt::format(" {}", level);
+    return text + "\n";
+}
+
 /// Figures of a clocked machine, and of its schedule, in the same form.
 class ClockedText {
   public:
@@ -87,22 +122,13 @@ class ClockedText {
               static_cast<const TableMemory*>(p.displacement_map_for_tests.get()),
               static_cast<const TableMemory*>(&p.normal_map), static_cast<const TableMemory*>(&p.height_table)})
             if (memory != nullptr)
-                text += fmt::format("{}: {} entries, {} slots, {} cycles held up, {} occupied\n", memory->name(),
-                                    memory->transactions(), memory->slots_taken(), memory->cycles_held_up(),
+                text += memory_line(*memory, memory->transactions(), memory->slots_taken(), memory->cycles_held_up(),
                                     memory->occupied_cycles());
-        text += fmt::format("parts {}, {} taken, {} corners, {} edges, {} ahead of parts\n",
-                            p.get_triangle.parts_sent(), p.triangle_pass_or_tessellate->from_transform.taken(),
-                            p.tessellation_tests[0].view_test.from_transform->taken(),
-                            p.triangle_pass_or_tessellate->from_tessellation_tests[0].taken(),
-                            p.triangle_pass_or_tessellate->most_ahead_of_parts());
-        return text + levels_text(p.triangle_queue.high_water_mark(), p.triangle_queue.history());
-    }
-
-    static std::string levels_text(std::uint64_t most, const LevelHistory& history) {
-        std::string text = fmt::format("queue: at most {}, each {} cycles:", most, history.stretch());
-        for (const std::uint64_t level : history.highest())
-            text += fmt::format(" {}", level);
-        return text + "\n";
+        text += parts_line(p.get_triangle.parts_sent(), p.triangle_pass_or_tessellate->from_transform.taken(),
+                           p.tessellation_tests[0].view_test.from_transform->taken(),
+                           p.triangle_pass_or_tessellate->from_tessellation_tests[0].taken(),
+                           p.triangle_pass_or_tessellate->most_ahead_of_parts());
+        return text + levels_line(p.triangle_queue.high_water_mark(), p.triangle_queue.history());
     }
 
   private:
@@ -110,14 +136,11 @@ class ClockedText {
         const Activity& activity = unit.activity();
         if (times.any() != (activity.items_in() > 0))
             throw std::logic_error(fmt::format("{}: items were not observed", unit.name()));
-        std::string text =
-            fmt::format("{}: items {} in cycles {}, at most {}, item cycles {}", unit.name(), activity.items_in(),
-                        times.text(), activity.high_water_mark(), activity.item_cycles());
-        for (std::size_t state = 0; state < states; ++state)
-            text += fmt::format(", {}", activity.cycles_in(static_cast<State>(state)));
+        std::string text = unit_line(unit, activity.items_in(), times, activity.high_water_mark(),
+                                     activity.item_cycles(), [&](State state) { return activity.cycles_in(state); });
         for (const Activity::Share& share : activity.shares())
             if (share.by != nullptr)
-                text += fmt::format(", {} {} {}", static_cast<int>(share.state), share.by->name(), share.cycles);
+                text += share_text(share.state, share.by->name(), share.cycles);
         return text + "\n";
     }
 
@@ -171,30 +194,27 @@ class ScheduledText {
                 continue;
             const schedule::Ports& ports = schedule_.ports(memory);
             const auto& slots = ports.bank_slots();
-            text += fmt::format(
-                "{}: {} entries, {} slots, {} cycles held up, {} occupied\n", units_[memory]->name(), ports.entries(),
-                std::accumulate(slots.begin(), slots.end(), std::uint64_t{0}), ports.held_up(),
+            text += memory_line(
+                *units_[memory], ports.entries(), std::accumulate(slots.begin(), slots.end(), std::uint64_t{0}),
+                ports.held_up(),
                 std::max(*std::max_element(slots.begin(), slots.end()) / ports.ports_of_a_bank(), ports.held_up()));
         }
-        text += fmt::format("parts {}, {} taken, {} corners, {} edges, {} ahead of parts\n", schedule_.parts_sent(),
-                            schedule_.parts_sent(), schedule_.corners(), schedule_.edges(),
-                            schedule_.most_ahead_of_parts());
-        return text + ClockedText::levels_text(schedule_.source().highest(), schedule_.source().history());
+        text += parts_line(schedule_.parts_sent(), schedule_.parts_sent(), schedule_.corners(), schedule_.edges(),
+                           schedule_.most_ahead_of_parts());
+        return text + levels_line(schedule_.source().highest(), schedule_.source().history());
     }
 
   private:
     std::string unit_text(schedule::Unit unit) const {
         const schedule::Figures its = schedule_.figures(unit);
-        std::string text = fmt::format("{}: items {} in cycles {}, at most {}, item cycles {}", units_[unit]->name(),
-                                       its.items, times_[unit].text(), its.most, its.item_cycles);
-        for (std::size_t state = 0; state < states; ++state)
-            text += fmt::format(", {}", its.states->cycles_in(static_cast<State>(state)));
+        std::string text = unit_line(*units_[unit], its.items, times_[unit], its.most, its.item_cycles,
+                                     [&](State state) { return its.states->cycles_in(state); });
         for (const schedule::States::Share& share : its.states->shares()) {
             if (share.by == schedule::nobody)
                 continue;
             const char* const by =
                 share.by == schedule::rasteriser ? machine_.rasteriser.name() : units_[share.by]->name();
-            text += fmt::format(", {} {} {}", static_cast<int>(share.state), by, share.cycles);
+            text += share_text(share.state, by, share.cycles);
         }
         return text + "\n";
     }
