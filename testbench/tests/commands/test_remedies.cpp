@@ -28,6 +28,15 @@ picture = false
 folder = "out"
 )";
 constexpr const char* prelude = R"(
+# gtkwave: in the folder's bin, tells what it opens
+gtkwave() { mkdir -p bin; printf '#!/bin/bash\necho "opens ${@: -2}"\n' > bin/gtkwave; chmod +x bin/gtkwave; }
+# without COMMAND ...: a script of this repository, where these commands do not exist
+without() {
+    local name path=$PWD/few
+    mkdir -p few
+    for name in bash cat dirname readlink sort printf sed; do ln -sf "$(type -P $name)" few/; done
+    PATH=$path "$@"
+}
 # run KEY=VALUE ...: the small job with these keys
 run() { local s a=(); for s in "$@"; do a+=(--set "$s"); done; tessera run small.toml "${a[@]}"; }
 # the same, without the checks
@@ -62,13 +71,26 @@ patch() {
 }
 # quadric: a surface file
 quadric() { printf '%s\n' '[quadric]' 'shape = "sphere"' 'radius = 2' 'centre = [0, 0, -1]'; }
+# nurbs: another
+nurbs() {
+    printf '%s\n' '[nurbs]' 'degree_u = 2' 'degree_v = 1' 'knots_u = [0.0, 0.0, 0.0, 1.0, 2.0, 2.0, 2.0]' \
+        'knots_v = [0.0, 0.0, 1.0, 1.0]' 'heights = [[0.0, 1.0, 2.0, 3.0], [4.0, 5.0, 6.0, 7.0]]'
+}
+# unwrapped SIZE: a job of one triangle with texture coordinates up to SIZE
+unwrapped() {
+    printf '%s\n' '[mesh]' 'source = "file"' 'file = "a.obj"' '[map]' 'address_u = "repeat"' 'address_v = "repeat"' > a.job
+    printf '%s\n' 'v 0 0 0' 'v 1 0 0' 'v 0 1 0' 'vt 0 0' "vt $1 0" "vt 0 $1" 'f 1/1 2/2 3/3' > a.obj
+}
+# bake OPTION ...: the surface file a.toml
+bake() { tessera bake a.toml --output b.exr "$@"; }
 # pgm WIDTH HEIGHT [MAXVAL]: an ASCII map, a slope
 pgm() { awk -v W=$1 -v H=$2 -v M=${3:-255} 'BEGIN { print "P2", W, H, M; for (k = 0; k < W * H; ++k) print k % (M + 1) }'; }
 )";
 
 ProgramEnd shell(const std::string& script, const fs::path& folder, const std::vector<std::string>& arguments = {}) {
-    return run_program(Arguments{"bash", "-euo", "pipefail", "-c",
-                                 "tessera() { '" + tessera_program() + "' \"$@\"; }\n" + prelude + script, "shell"} +
+    const std::string known = "tessera() { '" + tessera_program() + "' \"$@\"; }\nscripts='" +
+                              (source_folder() / "scripts").string() + "'\n";
+    return run_program(Arguments{"bash", "-euo", "pipefail", "-c", known + prelude + script, "shell"} +
                            arguments,
                        folder);
 }
@@ -159,9 +181,27 @@ void collect(const fs::path& file, std::vector<Literal>& literals) {
     }
 }
 
+void collect_script(const fs::path& file, std::vector<Literal>& literals) {
+    static const std::regex message(R"re((?:give_up|echo|\|\|) "((?:[^"\\]|\\[^])*)")re", std::regex::optimize);
+    const std::string source = read_all(file);
+    for (std::sregex_iterator found(source.begin(), source.end(), message); found != std::sregex_iterator(); ++found)
+        literals.push_back({fs::relative(file, source_folder()).string(), (*found)[1].str()});
+}
+
+/// Whether a test's source has the words.
+bool says(const fs::path& test, const std::string& words) {
+    std::vector<Literal> literals;
+    collect(test, literals);
+    const std::regex pattern = pattern_of(words);
+    return std::any_of(literals.begin(), literals.end(),
+                       [&](const Literal& literal) { return std::regex_search(literal.text, pattern); });
+}
+
 /// Every text of the program and its libraries that a user may see.
 std::vector<Literal> literals_of_messages() {
     std::vector<Literal> literals;
+    for (const char* const script : {"common.sh", "install", "run", "waves"})
+        collect_script(source_folder() / "scripts" / script, literals);
     for (const char* const room : {"modules", "testbench"}) {
         const fs::path root = source_folder() / room;
         for (auto entry = fs::recursive_directory_iterator(root); entry != fs::recursive_directory_iterator();
@@ -204,8 +244,12 @@ TEST_CASE("remedies: each that a message of the sources names has a case in the 
     for (const auto& table : remedies())
         for (const Remedy& remedy : table.second)
             known.push_back(remedy.advice);
-    for (const NotFollowed& text : not_followed())
+    for (const NotFollowed& text : not_followed()) {
         known.push_back(text.text);
+        INFO(text.text << ", " << text.test);
+        CHECK(text.test.empty() != text.why.empty());
+        CHECK((text.test.empty() || says(source_folder() / "testbench/tests" / text.test, text.text)));
+    }
     std::set<std::string> used, missing, unused;
     for (const Literal& literal : literals_of_messages()) {
         bool found = false;
@@ -233,4 +277,5 @@ TEST_CASE("remedies of meshes") { follow(remedies().at("mesh")); }
 TEST_CASE("remedies of the machine") { follow(remedies().at("machine")); }
 TEST_CASE("remedies of results and their checks") { follow(remedies().at("result")); }
 TEST_CASE("remedies of commands and files") { follow(remedies().at("command")); }
+TEST_CASE("remedies of scripts") { follow(remedies().at("script")); }
 // clang-format on

@@ -110,12 +110,21 @@ TEST_CASE("formats: a format too wide for an intermediate of the datapath is ref
     job.formats.normal_bits = 40;  // beyond the key's range, which validate() would refuse
     job.formats.normal_fraction = 26;
     CHECK_THROWS_WITH(make_setup(job, mesh, map),
-                      Catch::Contains("difference times a weight in interpolate") && Catch::Contains("formats"));
+                      Catch::Contains("difference times a weight in interpolate") &&
+                          Catch::Contains("narrow the formats to the ranges of their keys"));
     job.formats = {};
+    CHECK_NOTHROW(make_setup(job, mesh, map));
     job.tests.generation_limit = 16;  // likewise
     CHECK_THROWS_WITH(make_setup(job, mesh, map), Catch::Contains("tests.generation_limit has 4 bits") &&
                                                       Catch::Contains("cannot hold 16") &&
-                                                      Catch::Contains("raise formats.generation_bits"));
+                                                      Catch::Contains(
+                                                          "lower tests.generation_limit or raise formats.generation_bits"));
+    job.tests.generation_limit = 15;
+    CHECK_NOTHROW(make_setup(job, mesh, map));
+    job.formats.generation_bits = 3;
+    CHECK_THROWS_WITH(make_setup(job, mesh, map), Catch::Contains("has 3 bits and cannot hold 15"));
+    job.formats.generation_bits = 4;
+    CHECK_NOTHROW(make_setup(job, mesh, map));
 }
 
 // 5 integer bits hold texels up to 32; the registers of the map's size have one bit more.
@@ -133,6 +142,12 @@ TEST_CASE("formats: a map too large for its registers is refused, even if no tex
                           "the register map." + side +
                               " has 6 bits and cannot hold 64: use a smaller map or raise "
                               "formats.texture_integer");
+        Job wider = job, smaller = job;
+        wider.formats.texture_integer = 6;
+        CHECK_NOTHROW(make_setup(resolve_job(wider, mesh, map).job, mesh, map));
+        smaller.map.width = smaller.map.height = 63;
+        const HeightMap smaller_map = load_map(smaller);
+        CHECK_NOTHROW(make_setup(resolve_job(smaller, mesh, smaller_map).job, mesh, smaller_map));
     };
     refused(64, 63, "width");
     refused(63, 64, "height");

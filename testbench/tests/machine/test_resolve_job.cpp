@@ -260,4 +260,5 @@ TEST_CASE("setup and golden model refuse a job that is not resolved as a program
                       "resolve_job() on the job first");
     CHECK_THROWS_WITH(GoldenJob(job, plane, map, setup.model_scale),
                       "GoldenJob: camera.up is \"auto\"; call resolve_job() on the job first");
+    CHECK_NOTHROW(make_setup(resolve_job(job, plane, map).job, plane, map));
 }

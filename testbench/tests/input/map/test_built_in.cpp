@@ -153,6 +153,8 @@ TEST_CASE("built-in maps have the same bits everywhere") {
 TEST_CASE("built-in maps refuse invalid parameters") {
     CHECK(constant_map(2, 3, 0.5).values == std::vector<float>(6, 0.5F));
     CHECK_THROWS_WITH(constant_map(2, 2, 1.5), Contains("value is 1.5; it must be 0 to 1"));
+    for (const double end : {0.0, 1.0})
+        CHECK_NOTHROW(constant_map(2, 2, end));
     CHECK_THROWS_AS(constant_map(2, 2, std::nan("")), InputError);
     CHECK_THROWS_WITH(ramp_map(0, 2), Contains("0 x 2 texels"));
     CHECK_THROWS_WITH(half_donut_map(2, 4097), Contains("2 x 4097"));

@@ -6,6 +6,7 @@
 #include "testbench/input/mesh/built_in.h"
 #include "testbench/input/mesh/make_base_mesh.h"
 #include "testbench/tests/input/mesh/mesh_checks.h"
+#include "testbench/tests/support/test_folder.h"
 
 using namespace tessera;
 using Catch::Contains;
@@ -115,9 +116,11 @@ TEST_CASE("a sphere is closed, faces outward and has no flat triangle") {
 
 TEST_CASE("built-in meshes refuse invalid parameters and name the key") {
     const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
-    CHECK_THROWS_WITH(make_plane(0, 3, 2, 2), Contains("mesh.columns = 0") && Contains("1 to 4096"));
+    CHECK_THROWS_WITH(make_plane(0, 3, 2, 2), Contains("mesh.columns = 0: must be 1 to 4096 for this mesh"));
+    CHECK_NOTHROW(make_plane(1, 4096, 2, 2));
     CHECK_THROWS_WITH(make_plane(3, 4097, 2, 2), Contains("mesh.rows = 4097"));
-    CHECK_THROWS_WITH(make_plane(3, 3, nan, 2), Contains("mesh.width"));
+    CHECK_THROWS_WITH(make_plane(3, 3, nan, 2), Contains("mesh.width = nan: must be a length above 0, "));
+    CHECK_NOTHROW(make_plane(3, 3, 1e-30, 1e30));
     CHECK_THROWS_WITH(make_plane(3, 3, 2, -1), Contains("mesh.depth = -1"));
     CHECK_THROWS_WITH(make_cylinder(2, 3, 1, 2), Contains("mesh.columns = 2") && Contains("3 to 4096"));
     CHECK_THROWS_WITH(make_cylinder(3, 3, 0, 2), Contains("mesh.radius = 0"));
@@ -143,7 +146,13 @@ TEST_CASE("the mesh source of the job is dispatched") {
     job.rows = 2;
     CHECK(make_base_mesh(job, "").triangles.size() == 6);
     job.source = MeshSource::file;
-    CHECK_THROWS_AS(make_base_mesh(job, ""), InputError);
+    CHECK_THROWS_WITH(make_base_mesh(job, ""), Contains("mesh.source = \"file\" it must name an OBJ file"));
+    const TestFolder here;
+    here.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    CHECK(make_base_mesh(job, (here.path() / "a.obj").string()).triangles.size() == 1);
     CHECK_THROWS_WITH(make_base_mesh(job, "nowhere/at_all.obj"), Contains("nowhere/at_all.obj: no such file"));
     CHECK_THROWS_WITH(make_base_mesh(job, "."), Contains("not a regular file"));
+    job.source = static_cast<MeshSource>(99);
+    CHECK_THROWS_WITH(make_base_mesh(job, ""),
+                      "mesh.source is not one of plane, cylinder, sphere, file, patches, run");
 }

@@ -173,7 +173,9 @@ const CaseTable<Stubborn> refused{
             run_frame(driver, result);
         };
         CHECK_THAT(error_of([] { sc_core::sc_start(); }), Contains("device_0.machine.") && Contains(row.port + ": ") &&
-                                                              Contains("0x") && Contains("transport_dbg"));
+                                                              Contains("0x") &&
+                                                              Contains("give the memory, and what is in front of it, "
+                                                                       "transport_dbg for writes"));
     }};
 
 const CaseTable<Stubborn> host_refused{
@@ -275,7 +277,43 @@ const CaseTable<BenchMode> overwritten{
         BridgedUnits first_units(setup.design.timing, joined(memory));
         BridgedUnits second_units(setup.design.timing, joined(memory));
         NamedMachine first("first", setup, &first_units), second("second", other, &second_units);
-        CHECK_THAT(error_of([] { sc_core::sc_start(); }), Contains("first.pipeline.") && Contains("no longer holds"));
+        CHECK_THAT(error_of([] { sc_core::sc_start(); }), Contains("first.pipeline.") &&
+                                                             Contains("no longer holds the table that was written to "
+                                                                      "it: give each machine and table a memory, or "
+                                                                      "addresses, of its own"));
+    }};
+
+const CaseTable<BenchMode> apart{
+    "two machines with different tables in one memory, at addresses of their own, draw their meshes: ",
+    {{"functional", false}, {"timed", true}},
+    [](const BenchMode& mode) {
+        const MachineSetup setup = setup_of(small_job(mode.timed));
+        MachineSetup other = setup_of(small_job(mode.timed, "map.source=noise"));
+        for (datapath::MapRegisters* const map : {&other.registers.displacement_map, &other.registers.normal_map})
+            map->base += 1u << 20;
+        other.registers.height_table.base += 1u << 20;
+        SharedMemory memory("memory");
+        BridgedUnits first_units(setup.design.timing, joined(memory));
+        BridgedUnits second_units(setup.design.timing, joined(memory));
+        NamedMachine first("first", setup, &first_units), second("second", other, &second_units);
+        sc_core::sc_start();
+        expect_bare_mesh(first);
+        expect_bare_mesh(second);
+    }};
+
+const CaseTable<BenchMode> separate{
+    "two machines with different tables at the same place of a memory each draw their meshes: ",
+    {{"functional", false}, {"timed", true}},
+    [](const BenchMode& mode) {
+        const MachineSetup setup = setup_of(small_job(mode.timed));
+        const MachineSetup other = setup_of(small_job(mode.timed, "map.source=noise"));
+        SharedMemory memory("memory"), other_memory("other_memory");
+        BridgedUnits first_units(setup.design.timing, joined(memory));
+        BridgedUnits second_units(setup.design.timing, joined(other_memory));
+        NamedMachine first("first", setup, &first_units), second("second", other, &second_units);
+        sc_core::sc_start();
+        expect_bare_mesh(first);
+        expect_bare_mesh(second);
     }};
 
 // Registers that are not laid out have all tables at address 0.

@@ -128,6 +128,23 @@ TEST_CASE("design rules: a machine refuses what would end in a signal, or never 
     CHECK(complaint([](Design&, datapath::Formats&) {}).empty());
 }
 
+TEST_CASE("design rules: what a fault of a design and its formats advises is accepted") {
+    CHECK(complaint([](Design& d, datapath::Formats& f) {
+              d.work = Work::family;
+              f.families = true;
+          }).empty());
+    CHECK(complaint([](Design& d, datapath::Formats& f) {
+              d.test_order = TestOrder::cheap_first;
+              f.distances = true;
+          }).empty());
+    CHECK(complaint([](Design& d, datapath::Formats& f) {
+              d.work = Work::family;
+              f.families = true;
+              d.test_order = TestOrder::cheap_first;
+              d.edge_lanes = 2;
+          }).empty());
+}
+
 TEST_CASE("design rules: several faults are said at once") {
     CHECK_THAT(complaint([](Design& d, datapath::Formats&) {
                    d.timing.normal_map.ports = 0;
