@@ -229,7 +229,7 @@ inline const std::map<std::string, std::vector<Remedy>>& remedies() {
         {"script",
          {
              {"run mode=timed > a.txt; bash $scripts/waves out", "let the job write its waveforms", "gtkwave; run mode=timed output.vcd=true > a.txt; DISPLAY=:9 PATH=$PWD/bin:$PATH bash $scripts/waves out"},
-             {"gtkwave; run mode=timed output.vcd=true > a.txt; DISPLAY=:9 PATH=$PWD/bin:$PATH bash $scripts/waves out none", "The views are: {} {} {} {} {} {}", "for view in $1 $2 $3 $4 $5 $6; do DISPLAY=:9 PATH=$PWD/bin:$PATH bash $scripts/waves out $view; done"},
+             {"gtkwave; run mode=timed output.vcd=true > a.txt; DISPLAY=:9 PATH=$PWD/bin:$PATH bash $scripts/waves out none", "The views are: {}", "for view in $1 overview; do DISPLAY=:9 PATH=$PWD/bin:$PATH bash $scripts/waves out $view; done"},
              {"bash $scripts/waves", "name a run's folder", "gtkwave; run mode=timed output.vcd=true > a.txt; DISPLAY=:9 PATH=$PWD/bin:$PATH bash $scripts/waves out"},
              {"bash $scripts/waves out --screenshot", "--screenshot needs a file", "bash $scripts/waves --help"},
              {"bash $scripts/waves out --none", "see --help", "bash $scripts/waves --help"},
@@ -409,6 +409,7 @@ inline const std::vector<NotFollowed>& not_followed() {
         {"raise that run's thresholds under [tests]", large},
         {"set output.ply and output.obj to false", large},
         {"check its permissions", large},
+        {"make it writable, or build in another checkout", large},
         {"check the disk", large},
         {"{}: more than {} bytes, the limit of {}: simplify the mesh", large},
         {"make it and its folder writable, or write to another folder", large},

@@ -34,7 +34,7 @@ gtkwave() { mkdir -p bin; printf '#!/bin/bash\necho "opens ${@: -2}"\n' > bin/gt
 without() {
     local name path=$PWD/few
     mkdir -p few
-    for name in bash cat dirname readlink sort printf sed; do ln -sf "$(type -P $name)" few/; done
+    for name in bash cat dirname readlink sort printf sed; do ln -sf $(type -P $name) few/; done
     PATH=$path "$@"
 }
 # run KEY=VALUE ...: the small job with these keys
@@ -185,7 +185,8 @@ void collect_script(const fs::path& file, std::vector<Literal>& literals) {
     static const std::regex message(R"re((?:give_up|echo|\|\|) "((?:[^"\\]|\\[^])*)")re", std::regex::optimize);
     const std::string source = read_all(file);
     for (std::sregex_iterator found(source.begin(), source.end(), message); found != std::sregex_iterator(); ++found)
-        literals.push_back({fs::relative(file, source_folder()).string(), (*found)[1].str()});
+        literals.push_back({fs::relative(file, source_folder()).string(),
+                            std::regex_replace((*found)[1].str(), std::regex(R"(\$\w+)"), "{}")});
 }
 
 /// Whether a test's source has the words.

@@ -289,9 +289,9 @@ const CaseTable<BenchMode> apart{
     [](const BenchMode& mode) {
         const MachineSetup setup = setup_of(small_job(mode.timed));
         MachineSetup other = setup_of(small_job(mode.timed, "map.source=noise"));
-        for (datapath::MapRegisters* const map : {&other.registers.displacement_map, &other.registers.normal_map})
-            map->base += 1u << 20;
-        other.registers.height_table.base += 1u << 20;
+        datapath::Registers& r = other.registers;
+        for (datapath::TableLayout* const table : {&r.displacement_map, &r.normal_map, &r.height_table})
+            table->base += 1u << 20;
         SharedMemory memory("memory");
         BridgedUnits first_units(setup.design.timing, joined(memory));
         BridgedUnits second_units(setup.design.timing, joined(memory));

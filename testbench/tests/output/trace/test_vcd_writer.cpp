@@ -430,7 +430,7 @@ TEST_CASE("VCD: misuse is refused") {
     writer.add("top", "a", 1);  // a scope's name is free
     CHECK_THROWS_AS(writer.add("top.a", "x", 2), std::logic_error);
     CHECK_THROWS_AS(writer.add("top", "y", 0), std::logic_error);
-    CHECK_THROWS_WITH(writer.add("top", "y", 65), Contains("top.y needs 1 to 64 bits and a name"));
+    CHECK_THROWS_WITH(writer.add("top", "y", 65), Catch::Contains("top.y needs 1 to 64 bits and a name"));
     CHECK_NOTHROW(writer.add("top", "one_bit", 1));
     CHECK_NOTHROW(writer.add("top", "widest", 64));
     CHECK_THROWS_AS(writer.add("top", "", 1), std::logic_error);
