@@ -10,12 +10,9 @@
 #include "modules/units/displace_vertex.h"
 #include "modules/units/edge_tests/calculate_new_u.h"
 #include "modules/units/edge_tests/collect_tests.h"
-#include "modules/units/edge_tests/curvature.h"
-#include "modules/units/edge_tests/mipmap.h"
+#include "modules/units/edge_tests/height_test.h"
 #include "modules/units/edge_tests/normal.h"
-#include "modules/units/edge_tests/rank.h"
 #include "modules/units/edge_tests/sequence_tests.h"
-#include "modules/units/edge_tests/summed_height.h"
 #include "modules/units/edge_tests/tex_coord.h"
 #include "modules/units/edge_tests/view.h"
 #include "modules/units/families/pass_or_tessellate.h"
@@ -59,15 +56,9 @@ class UnitFactory {
     virtual std::unique_ptr<TexCoordTest> tex_coord_test(Name name, const UnitContext& context) {
         return std::make_unique<TexCoordTest>(name, context);
     }
-    /// The design's height test (datapath::Formats::height_test).
+    /// The Summed Height Test, or the design's test in its place (datapath::Formats::height_test).
     virtual std::unique_ptr<HeightTestUnit> height_test(Name name, const UnitContext& context) {
-        switch (context.registers.formats.height_test) {
-            case datapath::HeightTest::rank: return std::make_unique<RankTest>(name, context);
-            case datapath::HeightTest::curvature: return std::make_unique<CurvatureTest>(name, context);
-            case datapath::HeightTest::mipmap: return std::make_unique<MipmapTest>(name, context);
-            case datapath::HeightTest::summed_height: break;
-        }
-        return std::make_unique<SummedHeightTest>(name, context);
+        return std::make_unique<HeightTestUnit>(name, context);
     }
     virtual std::unique_ptr<NormalTest> normal_test(Name name, const UnitContext& context, Parts takes) {
         return std::make_unique<NormalTest>(name, context, takes);

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "modules/datapath/edge_tests.h"
+#include "modules/datapath/height_test.h"
 #include "modules/datapath/intermediate.h"
 #include "modules/datapath/map_address.h"
 #include "modules/datapath/map_entry.h"
@@ -25,6 +26,7 @@ struct CurvatureEntry {
 /// Exponent 0 stands for 1/8 of a code, exponent 15 for 2^12 codes: 127 units are then more than any map can have.
 inline constexpr int curvature_fraction = 3;
 inline constexpr int largest_curvature_exponent = 15;
+inline constexpr int curvature_entry_bits = 36;
 /// Levels of tables. Edges of at most two texels, level 1, read none.
 inline constexpr int least_curvature_level = 2;
 
@@ -182,5 +184,55 @@ inline Multiplications curvature_measure_multiplications(const Formats& f) {
     constexpr int coefficient = 8;
     return Multiplications().add(3, w.step.bits, w.step.bits).add(3, coefficient, w.product.bits);
 }
+
+/// Curvature Test, in place of the Summed Height Test: how far does the map deviate from the edge's chord? The host has
+/// fitted a quadratic to the map around each cell of a pyramid; an entry also holds what the fit leaves over.
+/// (Decision: a feature narrower than an edge can lie beside all of the Summed Height Test's rectangles. A fit detects
+/// it, with one read instead of twelve.) Unlike ranks, cells know of no lattice: the Tex Coord and Generation Tests end
+/// the recursion, and all edges that request a split are cut at once.
+///
+/// Memory: one entry of the Curvature Table per edge, from the level that matches the edge's length. For an edge of at
+///         most two texels the displacement map instead: the codes of its ends and of its midpoint, which is not yet
+///         displaced in any design, in one request, through the map's second side (table_memory.h), which has the ports
+///         and banks of the first, or, if the map has a cache, through Displace Vertex's cache.
+/// Arithmetic: a count of leading zeros and shifts for the level; three products of 4 x 4 bits, three of 8 x 7, their
+///         sum, a shift, a compare.
+/// Timing: latency 4 after the last entry; interval 1 by default. With one port a short edge's codes take three cycles.
+class CurvatureTest : public HeightTestFunctions {
+  public:
+    constexpr CurvatureTest() : HeightTestFunctions(1) {
+        codes = 3;
+        second_side = true;
+        covers_more = true;
+        values = {{{"level", 4}, {"measure", 40}}};
+        compared = 1;
+    }
+
+    int entry_bits(const Formats&) const override { return curvature_entry_bits; }
+    /// Cells of all levels, in one row.
+    void shape(const Registers& r, TableLayout& table) const override {
+        table.columns = r.covered.columns == 0 ? 0 : static_cast<std::uint32_t>(curvature_entries(covered_texels(r)));
+        table.rows = 1;
+    }
+    Multiplications multiplications(const Registers& r) const override {
+        return curvature_measure_multiplications(r.formats);
+    }
+    std::array<Threshold, 2> thresholds(const Registers& r) const override {
+        return {{{"threshold", 40, r.tests.curvature_threshold}}};
+    }
+    std::uint64_t limit(std::uint64_t, const TestParameters& tests) const override { return tests.curvature_threshold; }
+
+    void reads(const HeightEdge& edge, const Registers& r, Reads& reads) const override {
+        reads.through(curvature_by_codes(edge.t_i, edge.t_j, r.formats) ? 1 : 0);
+        reads.add_request();
+        curvature_reads(edge.t_i, edge.t_j, edge.t_ij, r, [&](std::uint64_t address) { reads.add_entry(address); });
+    }
+    void decide(const HeightEdge& edge, const Entries& entries, const Registers& r,
+                HeightDecision& decision) const override {
+        decision.values[0] = static_cast<unsigned>(curvature_level(edge.t_i, edge.t_j, r.formats));
+        decision.values[1] = curvature_of_entries(edge.t_i, edge.t_j, entries, r.formats);
+        decision.asks = curvature_test(decision.values[1], r.tests);
+    }
+};
 
 }  // namespace tessera::datapath

@@ -58,30 +58,6 @@ struct Formats {
 
 /// Bits of a midpoint's radius, beside a bound that depends on distance (rank_view.h).
 inline constexpr int radius_bits = 8;
-inline constexpr int curvature_entry_bits = 36;
-
-/// Bits of an entry of the height test's table.
-constexpr int height_entry_bits(const Formats& formats) {
-    switch (formats.height_test) {
-        case HeightTest::rank:
-            return formats.rank_bits + formats.bound_bits +
-                   (formats.distances && formats.bound_bits > 0 ? radius_bits : 0);
-        case HeightTest::curvature: return curvature_entry_bits;
-        case HeightTest::mipmap: return formats.displacement.bits;
-        case HeightTest::summed_height: break;
-    }
-    return formats.summed_height.bits;
-}
-
-/// Whether heights of short edges are read from the displacement map instead of the test's table.
-constexpr bool height_test_reads_codes(const Formats& formats) {
-    return formats.codes || formats.height_test == HeightTest::curvature;
-}
-
-/// Whether the test's table may cover more texels than the map (CoveredTexels).
-constexpr bool covers_more_than_the_map(const Formats& formats) {
-    return formats.height_test == HeightTest::rank || formats.height_test == HeightTest::curvature;
-}
 
 /// Bits of the number by which the `greatest_rank` cut compares edges: the rank or, without ranks, the bound.
 constexpr int ordering_bits(const Formats& formats) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "modules/datapath/edge_tests.h"
+#include "modules/datapath/height_test.h"
 #include "modules/datapath/intermediate.h"
 #include "modules/datapath/map_address.h"
 #include "modules/datapath/map_entry.h"
@@ -97,5 +98,45 @@ constexpr int mipmap_threshold_bits(const Formats& formats) {
 constexpr bool mipmap_test(std::uint64_t difference, const TestParameters& parameters) {
     return difference > parameters.mipmap_threshold;
 }
+
+/// Mipmap Test, in place of the Summed Height Test: does the filtered map at the edge's midpoint deviate from the
+/// chord? The paper (2.3.1) names mipmaps and "a maximal filter" as alternatives, without decision rules. One test
+/// serves both: the host fills the table with means or with maxima. The paper's claim that sums filter better holds:
+/// each test alone, with 4,800 triangles of Crater Lake, has an RMS error of 7.8 m with sums, 10.8 with means, 10.9
+/// with maxima.
+///
+/// Memory: three entries of the Mipmap Table per edge, at its ends and midpoint, from the level that fits its length: a
+///         request each, since they may be in different banks. The map itself is level 0, so that short edges need no
+///         second port.
+/// Arithmetic: a count of leading zeros and shifts for the level; two adds, a compare.
+/// Timing: latency 2 after the last entry; interval 1 by default. With one port an edge's entries take three cycles.
+class MipmapTest : public HeightTestFunctions {
+  public:
+    constexpr MipmapTest() : HeightTestFunctions(3) {
+        values = {{{"level", 4}, {"difference", 17}}};
+        compared = 1;
+    }
+
+    int entry_bits(const Formats& formats) const override { return formats.displacement.bits; }
+    /// Blocks of all levels, in one row.
+    void shape(const Registers& r, TableLayout& table) const override {
+        table.columns = static_cast<std::uint32_t>(mipmap_entries(r.map));
+        table.rows = 1;
+    }
+    std::array<Threshold, 2> thresholds(const Registers& r) const override {
+        return {{{"threshold", 17, r.tests.mipmap_threshold}}};
+    }
+    std::uint64_t limit(std::uint64_t, const TestParameters& tests) const override { return tests.mipmap_threshold; }
+
+    void reads(const HeightEdge& edge, const Registers& r, Reads& reads) const override {
+        mipmap_reads(edge.t_i, edge.t_j, edge.t_ij, r, [&](std::uint64_t address) { reads.add(address); });
+    }
+    void decide(const HeightEdge& edge, const Entries& entries, const Registers& r,
+                HeightDecision& decision) const override {
+        decision.values[0] = static_cast<unsigned>(mipmap_level(edge.t_i, edge.t_j, r.map, r.formats));
+        decision.values[1] = mipmap_difference(entries);
+        decision.asks = mipmap_test(decision.values[1], r.tests);
+    }
+};
 
 }  // namespace tessera::datapath

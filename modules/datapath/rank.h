@@ -45,6 +45,11 @@ struct RankEntry {
     std::uint32_t radius = 0;  ///< of the sphere that holds the surface which the error concerns (rank_view.h)
 };
 
+/// Bits of an entry of the Rank Table.
+constexpr int rank_entry_bits(const Formats& formats) {
+    return formats.rank_bits + formats.bound_bits + (formats.distances && formats.bound_bits > 0 ? radius_bits : 0);
+}
+
 /// An entry's fields: the rank in its lowest bits, the bound above, then the radius.
 constexpr RankEntry rank_entry(std::uint64_t bits, const Formats& formats) {
     const auto field = [&](int from, int width) {
@@ -52,7 +57,7 @@ constexpr RankEntry rank_entry(std::uint64_t bits, const Formats& formats) {
     };
     const int above = formats.rank_bits + formats.bound_bits;
     return {field(0, formats.rank_bits), field(formats.rank_bits, formats.bound_bits),
-            field(above, height_entry_bits(formats) - above)};
+            field(above, rank_entry_bits(formats) - above)};
 }
 
 /// RT: the rank or the bound is above its threshold. A field that a design's entries lack is 0 and never above it.

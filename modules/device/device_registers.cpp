@@ -151,7 +151,7 @@ Device::Failure Device::check(const datapath::Registers& machine) const {
     if (machine.map.height == 0 || machine.map.height > design_.largest_map.height)
         return at(DeviceError::bad_map_size, "map.height");
     const bool ranks = machine.formats.height_test == datapath::HeightTest::rank;
-    if (covers_more_than_the_map(machine.formats)) {
+    if (functions_of(machine.formats.height_test).covers_more) {
         const std::string table = kind_of(machine.formats.height_test).table;
         if (machine.covered.columns == 0 || machine.covered.columns > design_.largest_map.width)
             return at(DeviceError::bad_map_size, (table + ".columns").c_str());

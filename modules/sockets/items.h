@@ -4,6 +4,7 @@
 #include <type_traits>
 
 #include "modules/datapath/fields.h"
+#include "modules/datapath/height_test.h"
 #include "modules/datapath/rank_view.h"
 #include "modules/datapath/triangle_pass.h"
 #include "modules/sockets/parts.h"
@@ -165,13 +166,9 @@ struct TexCoordOperands {
 };
 
 /// Calculate New U to the Summed Height Test, or the test in its place.
-struct HeightOperands {
+struct HeightOperands : datapath::HeightEdge {
     static constexpr const char* name = "height operands";
     PartTag tag;
-    datapath::TexCoord t_i, t_j, t_ij;
-    bool codes_known = false;
-    std::uint16_t code_i = 0, code_j = 0;
-    datapath::EdgeInView ends{};
 
     template <class Codec, class Any>
     static constexpr void describe(datapath::Fields<Codec>& fields, Any& item) {

@@ -5,14 +5,16 @@
 #include <string>
 #include <systemc>
 
+#include "modules/datapath/reads.h"
 #include "modules/sockets/stream_input.h"
 #include "modules/sockets/stream_output.h"
-#include "modules/stage/reads.h"
 #include "modules/stage/unit.h"
 
 namespace tessera {
 
 class MemoryPort;
+using datapath::Entries;
+using datapath::Reads;
 
 /// A unit that accepts an item, reads any table entries it needs, processes it, and passes the result on. A derived
 /// unit declares its sockets once and implements the functions below; both modes run the same functions.

@@ -30,18 +30,19 @@ constexpr unsigned register_stages(const UnitTiming& timing, unsigned servers = 
 }
 
 /// Latency of the height test's reads: from its table or, for codes, from the displacement map.
-constexpr unsigned height_test_latency(const Design& design, const datapath::Formats& formats) {
+inline unsigned height_test_latency(const Design& design, const datapath::Formats& formats) {
     const Timing& t = design.timing;
     const MemoryTiming& its = t.*kind_of(formats.height_test).table_timing;
     // If the table overlaps the reads of `window` rectangles, there are places for their edges: those for the latency
     // alone would be four, half of the rectangles that a window of 24 overlaps.
     const unsigned table = t.read_latency(its) + its.window / 3;
-    return height_test_reads_codes(formats) ? std::max(table, t.read_latency(t.displacement_map)) : table;
+    return functions_of(formats.height_test).reads_codes(formats) ? std::max(table, t.read_latency(t.displacement_map))
+                                                                  : table;
 }
 
-/// Whether the displacement map is an on-chip dual-port memory, read by Displace Vertex and by the Curvature Test.
-constexpr bool displacement_map_has_two_sides(const Design& design, const datapath::Formats& formats) {
-    return formats.height_test == datapath::HeightTest::curvature && design.timing.displacement_map.cache.bytes == 0;
+/// Whether the displacement map is an on-chip dual-port memory, read by Displace Vertex and by the height test.
+inline bool displacement_map_has_two_sides(const Design& design, const datapath::Formats& formats) {
+    return functions_of(formats.height_test).second_side && design.timing.displacement_map.cache.bytes == 0;
 }
 
 /// Latency of Displace Vertex's reads: from the displacement map and, in the family design, from the normal map.

@@ -1,15 +1,14 @@
 #include "testbench/machine/bare_recursion.h"
 
+#include <algorithm>
+#include <cstring>
+
 #include "modules/datapath/bilinear.h"
 #include "modules/datapath/bump.h"
-#include "modules/datapath/curvature.h"
 #include "modules/datapath/displace.h"
 #include "modules/datapath/edge_tests.h"
 #include "modules/datapath/map_entry.h"
 #include "modules/datapath/midpoint.h"
-#include "modules/datapath/mipmap.h"
-#include "modules/datapath/rank_view.h"
-#include "modules/datapath/rectangle.h"
 #include "modules/datapath/transform.h"
 
 namespace tessera {
@@ -34,7 +33,8 @@ TableLayout as_indices(const TableLayout& layout) {
 
 }  // namespace
 
-BareRecursion::BareRecursion(const MachineSetup& setup) : setup_(setup) {
+BareRecursion::BareRecursion(const MachineSetup& setup)
+    : setup_(setup), height_test_(functions_of(setup.registers.formats.height_test)) {
     const MapGeometry& map = setup.registers.map;
     const Formats& formats = setup.registers.formats;
     normals_.reserve(setup.map.codes.size());
@@ -43,79 +43,33 @@ BareRecursion::BareRecursion(const MachineSetup& setup) : setup_(setup) {
             normals_.push_back(pack_normal(
                 tessera::map_normal(setup.map, x, y, setup.height_per_code, setup.texel_size, formats.normal),
                 formats.normal.bits));
-    const bool narrow = formats.summed_height.bits <= 32;
-    const std::size_t columns = std::size_t{map.width} + 1;
-    std::vector<std::uint64_t> sums(columns * (std::size_t{map.height} + 1), 0);
-    for (std::uint32_t y = 0; y < map.height; ++y) {
-        std::uint64_t along = 0;
-        for (std::uint32_t x = 0; x < map.width; ++x) {
-            along += setup.map.code(x, y);
-            sums[(y + 1) * columns + x + 1] = sums[y * columns + x + 1] + along;
+    const TableLayout& table = setup.registers.height_table;
+    height_table_.resize(table.bytes() + sizeof(std::uint64_t));
+    write_height_table(setup, [&](std::uint64_t address, const unsigned char* bytes, std::size_t count) {
+        std::copy_n(bytes, count, height_table_.begin() + static_cast<std::ptrdiff_t>(address - table.base));
+    });
+}
+
+HeightDecision BareRecursion::test_heights(const HeightEdge& edge) const {
+    static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "tables are read as their bytes lie in memory");
+    const Registers& r = setup_.registers;
+    Reads reads;
+    height_test_.reads(edge, r, reads);
+    Entries entries;  // NOLINT(cppcoreguidelines-pro-type-member-init): as many as are read
+    const bool codes = reads.last_port() == 1;
+    const std::uint64_t mask = ~std::uint64_t{0} >> (64 - 8 * r.height_table.entry_bytes);
+    for (unsigned k = 0; k < reads.entries(); ++k) {
+        const std::uint64_t address = reads.addresses()[k];
+        if (codes) {
+            entries[k] = setup_.heights()[(address - r.displacement_map.base) / r.displacement_map.entry_bytes];
+        } else {
+            std::memcpy(&entries[k], &height_table_[address - r.height_table.base], sizeof entries[k]);
+            entries[k] &= mask;
         }
     }
-    if (narrow)
-        sums_.assign(sums.begin(), sums.end());
-    else
-        wide_sums_ = std::move(sums);
-}
-
-std::uint64_t BareRecursion::sum_around(const TexCoord& t, const RectangleSize& size) const {
-    const Registers& r = setup_.registers;
-    const Rectangle rectangle = centred_rectangle(t, size, r.map, r.formats);
-    const TableLayout table = as_indices(r.height_table);
-    if (!sums_.empty())
-        return rectangle_sum(rectangle, r.map, table, r.formats,
-                             [&](std::uint64_t index) { return std::uint64_t{sums_[index]}; });
-    return rectangle_sum(rectangle, r.map, table, r.formats, [&](std::uint64_t index) { return wide_sums_[index]; });
-}
-
-bool BareRecursion::test_rank(const Vertex& i, const Vertex& j, EdgeTests& edge) const {
-    const Registers& r = setup_.registers;
-    if (!has_lattice_midpoint(i.texture, j.texture, r.formats))
-        return false;
-    const std::size_t index = rank_address(edge.texture, as_indices(r.height_table), r.map, r.formats);
-    const RankTables& tables = setup_.rank_tables;
-    const RankEntry entry{tables.rank.empty() ? 0u : tables.rank[index],
-                          tables.bound.empty() ? 0u : tables.bound[index],
-                          tables.radius.empty() ? 0u : tables.radius[index]};
-    edge.rank = ordering_rank(entry, r.formats);
-    return asks_by_rank(entry, edge_in_view(i.screen, j.screen), r.tests, r.formats);
-}
-
-std::uint64_t BareRecursion::curvature_of(const TexCoord& i, const TexCoord& j, const TexCoord& ij) const {
-    const Registers& r = setup_.registers;
-    const bool codes = curvature_by_codes(i, j, r.formats);
-    std::array<std::uint64_t, 3> read{};
-    std::size_t count = 0;
-    curvature_reads(i, j, ij, r, [&](std::uint64_t address) {
-        const TableLayout& table = codes ? r.displacement_map : r.height_table;
-        const std::size_t index = (address - table.base) / table.entry_bytes;
-        read[count++] = codes ? setup_.heights()[index] : setup_.curvature_table.entries[index];
-    });
-    return curvature_of_entries(i, j, read, r.formats);
-}
-
-std::uint64_t BareRecursion::mipmap_difference_of(const TexCoord& i, const TexCoord& j, const TexCoord& ij) const {
-    const TableLayout& table = setup_.registers.height_table;
-    std::array<std::uint64_t, 3> read{};
-    std::size_t count = 0;
-    mipmap_reads(i, j, ij, setup_.registers, [&](std::uint64_t address) {
-        read[count++] = setup_.mipmap_table.entries[(address - table.base) / table.entry_bytes];
-    });
-    return datapath::mipmap_difference(read);
-}
-
-bool BareRecursion::test_heights(const Vertex& i, const Vertex& j, EdgeTests& edge) const {
-    const Registers& r = setup_.registers;
-    switch (r.formats.height_test) {
-        case HeightTest::rank: return test_rank(i, j, edge);
-        case HeightTest::curvature: return curvature_test(curvature_of(i.texture, j.texture, edge.texture), r.tests);
-        case HeightTest::mipmap: return mipmap_test(mipmap_difference_of(i.texture, j.texture, edge.texture), r.tests);
-        case HeightTest::summed_height: break;
-    }
-    const RectangleSize size = rectangle_size(i.texture, j.texture, r.map, r.formats);
-    return summed_height_test(sum_around(i.texture, size), sum_around(j.texture, size), sum_around(edge.texture, size),
-                              size, r.tests);
+    HeightDecision decision;
+    height_test_.decide(edge, entries, r, decision);
+    return decision;
 }
 
 Direction BareRecursion::map_normal_at(const TexCoord& t) const {
@@ -169,8 +123,13 @@ void BareRecursion::evaluate_edge(TrianglePass& pass, int k) {
     if (r.tests.normal_test && normal_test(i.displaced_normal, j.displaced_normal, edge.displaced_normal, r.tests))
         tests |= normal_bit;
     edge.rank = 0;
-    if (r.tests.summed_height_test && test_heights(i, j, edge))
-        tests |= summed_height_bit;
+    if (r.tests.summed_height_test) {
+        const HeightDecision decision =
+            test_heights({i.texture, j.texture, edge.texture, false, 0, 0, edge_in_view(i.screen, j.screen)});
+        edge.rank = decision.rank;
+        if (decision.asks)
+            tests |= summed_height_bit;
+    }
     if (!r.tests.view_test || view_test(i.screen, j.screen, r.tests))
         tests |= view_bit;
     if (!r.tests.tex_coord_test || tex_coord_test(i.texture, j.texture, made.texture, r.formats))

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "modules/datapath/cull.h"
+#include "modules/datapath/height_tests.h"
 #include "modules/datapath/parameters.h"
 #include "modules/datapath/tessellate.h"
 #include "testbench/machine/emitted_mesh.h"
@@ -42,21 +43,12 @@ class BareRecursion {
     void evaluate_edge(datapath::TrianglePass& pass, int k);
     /// Evaluates all edges with every test, pass.split, and the tests that kept edges whole (Triangle::stopped_by).
     void evaluate(datapath::TrianglePass& pass);
-    /// The design's height test; false if it is off.
-    bool test_heights(const datapath::Vertex& i, const datapath::Vertex& j, datapath::EdgeTests& edge) const;
-    /// The Summed Height Test's sum of the map's codes.
-    std::uint64_t sum_around(const datapath::TexCoord& t, const datapath::RectangleSize& size) const;
-    /// The value that the Curvature Test compares for an edge.
-    std::uint64_t curvature_of(const datapath::TexCoord& i, const datapath::TexCoord& j,
-                               const datapath::TexCoord& ij) const;
-    /// The same for the Mipmap Test.
-    std::uint64_t mipmap_difference_of(const datapath::TexCoord& i, const datapath::TexCoord& j,
-                                       const datapath::TexCoord& ij) const;
+    /// What the design's height test makes of an edge, on or off.
+    datapath::HeightDecision test_heights(const datapath::HeightEdge& edge) const;
 
   private:
     datapath::ChildIndices children_of(const datapath::TrianglePass& pass) const;
     void transform_normals(datapath::Triangle& triangle);
-    bool test_rank(const datapath::Vertex& i, const datapath::Vertex& j, datapath::EdgeTests& edge) const;
     datapath::Direction map_normal_at(const datapath::TexCoord& t) const;
     std::uint32_t code_at(const datapath::TexCoord& t) const;
     /// The map's entries that are read at t (datapath::map_entries).
@@ -66,8 +58,8 @@ class BareRecursion {
 
     const MachineSetup& setup_;
     std::vector<std::uint64_t> normals_;  // packed as in the normal map
-    std::vector<std::uint32_t> sums_;     // narrow tables; else wide_sums_
-    std::vector<std::uint64_t> wide_sums_;
+    const datapath::HeightTestFunctions& height_test_;
+    std::vector<unsigned char> height_table_;  // as in the memory, and 8 bytes more
     datapath::Saturations saturations_;
 };
 

@@ -1,14 +1,16 @@
 #include "testbench/machine/decisions.h"
 
-#include "modules/datapath/curvature.h"
 #include "modules/datapath/edge_tests.h"
-#include "modules/datapath/rank.h"
+#include "modules/datapath/midpoint.h"
 
 namespace tessera {
 
 using datapath::TestBits;
 
-Decisions::Decisions(const MachineSetup& setup) : registers_(setup.registers) {
+Decisions::Decisions(const MachineSetup& setup)
+    : registers_(setup.registers),
+      height_test_(functions_of(registers_.formats.height_test)),
+      reads_vary_(height_test_.may_read_nothing || height_test_.reads_codes(registers_.formats)) {
     if (setup.design.test_order != TestOrder::parallel || setup.registers.formats.final_edges ||
         setup.registers.formats.families)
         bare_.emplace(setup);
@@ -44,23 +46,15 @@ void Decisions::count(const datapath::TrianglePass& pass) {
     }
 }
 
-/// A Rank Test decides an edge without a lattice midpoint without a read.
-bool Decisions::off_lattice(const datapath::TrianglePass& pass, int edge) const {
-    return registers_.formats.height_test == datapath::HeightTest::rank &&
-           !has_lattice_midpoint(pass.edge_begin(edge).texture, pass.edge_end(edge).texture, registers_.formats);
-}
-
-/// Edges of at most two texels; or rectangles of one texel, with the ends displaced before this pass.
-bool Decisions::by_codes(const datapath::TrianglePass& pass, int edge) const {
-    if (registers_.formats.height_test == datapath::HeightTest::curvature)
-        return registers_.tests.summed_height_test &&
-               curvature_by_codes(pass.edge_begin(edge).texture, pass.edge_end(edge).texture, registers_.formats);
-    if (!registers_.formats.codes || !registers_.tests.summed_height_test ||
-        (pass.new_vertices != 0 && !registers_.formats.families))
-        return false;
-    return rectangle_size(pass.edge_begin(edge).texture, pass.edge_end(edge).texture, registers_.map,
-                          registers_.formats)
-        .is_one_texel();
+/// The reads of an edge, in a design whose edges read more than its height test's table, or nothing.
+void Decisions::count_reads(const datapath::TrianglePass& pass, int k) {
+    const datapath::Vertex& i = pass.edge_begin(k);
+    const datapath::Vertex& j = pass.edge_end(k);
+    const bool displaced_before = pass.new_vertices == 0 || registers_.formats.families;
+    datapath::Reads reads;
+    height_test_.reads({i.texture, j.texture, midpoint(i.texture, j.texture), displaced_before}, registers_, reads);
+    evaluated_.off_lattice += reads.requests() == 0;
+    evaluated_.summed_height_by_codes += reads.last_port() == 1 && registers_.tests.summed_height_test;
 }
 
 void Decisions::write(const datapath::TrianglePass& pass) {
@@ -69,9 +63,11 @@ void Decisions::write(const datapath::TrianglePass& pass) {
             continue;
         const unsigned evaluated = pass.edges[static_cast<std::size_t>(k)].evaluated;
         evaluated_.normal += (evaluated & datapath::normal_bit) != 0;
-        evaluated_.summed_height += (evaluated & datapath::summed_height_bit) != 0;
-        evaluated_.off_lattice += (evaluated & datapath::summed_height_bit) != 0 && off_lattice(pass, k);
-        evaluated_.summed_height_by_codes += (evaluated & datapath::summed_height_bit) != 0 && by_codes(pass, k);
+        if ((evaluated & datapath::summed_height_bit) == 0)
+            continue;
+        ++evaluated_.summed_height;
+        if (reads_vary_)
+            count_reads(pass, k);
     }
     if (!bare_) {
         count(pass);

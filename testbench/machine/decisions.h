@@ -5,6 +5,7 @@
 #include <tlm>
 #include <vector>
 
+#include "modules/datapath/height_tests.h"
 #include "modules/datapath/triangle_pass.h"
 #include "testbench/machine/bare_recursion.h"
 #include "testbench/machine/emitted_mesh.h"
@@ -54,10 +55,11 @@ class Decisions : public tlm::tlm_analysis_if<datapath::TrianglePass> {
   private:
     void count(const datapath::TrianglePass& pass);
     void count(std::uint8_t tests);
-    bool off_lattice(const datapath::TrianglePass& pass, int edge) const;
-    bool by_codes(const datapath::TrianglePass& pass, int edge) const;
+    void count_reads(const datapath::TrianglePass& pass, int edge);
 
     const datapath::Registers& registers_;
+    const datapath::HeightTestFunctions& height_test_;
+    const bool reads_vary_;                      // some edges read the displacement map, or nothing
     mutable std::optional<BareRecursion> bare_;  // absent if the machine evaluates every test of every edge
     std::vector<std::uint8_t> split_by_;         // of each pass that split its triangle, by number
     Counts counts_;

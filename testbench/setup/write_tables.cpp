@@ -59,6 +59,11 @@ void write_tables(const PreparedScene& scene, const TableSink& sink) {
         return datapath::pack_normal(map_normal(scene.map, x, y, scene.height_per_code, scene.texel_size, format),
                                      format.bits);
     });
+    write_height_table(scene, sink);
+}
+
+void write_height_table(const PreparedScene& scene, const TableSink& sink) {
+    const datapath::Registers& registers = scene.registers;
     switch (registers.formats.height_test) {
         case datapath::HeightTest::summed_height: write_summed_height_table(scene, sink); break;
         case datapath::HeightTest::rank: write_rank_table(scene, sink); break;

@@ -22,7 +22,7 @@ TexCoordOperands for_tex_coord_test(const EdgeToTest& edge) {
 HeightOperands for_summed_height_test(const EdgeToTest& edge) {
     const EdgeEnd& i = edge.ends[0];
     const EdgeEnd& j = edge.ends[1];
-    return {edge.tag, i.t, j.t, edge.t_ij, edge.new_vertices == 0, i.code, j.code};
+    return {{i.t, j.t, edge.t_ij, edge.new_vertices == 0, i.code, j.code, {}}, edge.tag};
 }
 
 ViewOperands for_view_test(const EdgeToTest& edge) {

@@ -5,21 +5,51 @@
 namespace tessera {
 
 HeightTestUnit::HeightTestUnit(const sc_core::sc_module_name& name, const UnitContext& context)
+    : HeightTestUnit(name, context, functions_of(context.registers.formats.height_test)) {}
+
+HeightTestUnit::HeightTestUnit(const sc_core::sc_module_name& name, const UnitContext& context,
+                               const datapath::HeightTestFunctions& functions)
     : Stage(name, context, context.timing().*kind_of(context.registers.formats.height_test).unit_timing, 1,
             height_test_latency(context.design, context.registers.formats)),
       table(kind_of(context.registers.formats.height_test).table, context.registers.height_table.entry_bytes,
             context.design.direct_memory),
-      registers_(context.registers) {
+      registers_(context.registers),
+      functions_(functions) {
     takes_from(context, input);
     delivers_to(context, output);
-    reads_through(table, kind_of(registers_.formats.height_test).requests);
-    if (height_test_reads_codes(registers_.formats)) {
+    reads_through(table, functions.requests);
+    if (functions.reads_codes(registers_.formats)) {
         displacement_map.emplace("displacement_map", registers_.displacement_map.entry_bytes,
                                  context.design.direct_memory);
         reads_through(*displacement_map, 1);
     }
-    keeps(static_cast<int>(kind_of(registers_.formats.height_test).requests) *
-          datapath::height_entry_bits(registers_.formats));
+    keeps(static_cast<int>(functions.requests) * functions.entry_bits(registers_.formats));
+    multiplies(functions.multiplications(registers_));
+}
+
+void HeightTestUnit::reads(const HeightOperands& edge, Reads& reads) const {
+    if (registers_.tests.summed_height_test)
+        functions_.reads(edge, registers_, reads);
+}
+
+HeightResult HeightTestUnit::process(const HeightOperands& edge, const Entries& entries) {
+    if (!registers_.tests.summed_height_test)
+        decision_ = {};
+    else
+        functions_.decide(edge, entries, registers_, decision_);
+    return {edge.tag, decision_.asks, decision_.rank};
+}
+
+void HeightTestUnit::trace_signals(Signals& signals) const {
+    Stage::trace_signals(signals);
+    for (const auto& threshold : functions_.thresholds(registers_))
+        if (threshold.name != nullptr)
+            signals.value(threshold.name, threshold.bits, threshold.value);
+}
+
+void HeightTestUnit::trace_processed(Signals& signals, const HeightOperands&, const HeightResult&) const {
+    for (unsigned k = 0; k < functions_.traced(registers_.formats); ++k)
+        signals.value(functions_.values[k].name, functions_.values[k].bits, decision_.values[k]);
 }
 
 }  // namespace tessera

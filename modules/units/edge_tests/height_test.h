@@ -2,16 +2,20 @@
 #include <optional>
 #include <systemc>
 
+#include "modules/datapath/height_tests.h"
 #include "modules/sockets/items.h"
 #include "modules/sockets/memory_port.h"
 #include "modules/stage/stage.h"
 
 namespace tessera {
 
-/// Common base of the Summed Height Test and of the tests that a design may have in its place (datapath::HeightTest),
-/// each with its own table.
+/// The unit of the Summed Height Test (paper figure 8), or of the test that a design has in its place. Arithmetic, table,
+/// and the latency's reasons: the test's file, in modules/datapath.
 ///
 /// In:   HeightOperands. Out: HeightResult.
+/// Memory: the test's table; for some edges the displacement map (HeightTestFunctions::reads_codes).
+/// Timing: the test's latency, after the last table entry; interval 1 by default, or that of the table reads if longer.
+/// Waits for Calculate New U and the table; held back by the collector of the tests.
 class HeightTestUnit : public Stage<HeightOperands, HeightResult> {
   public:
     StreamInput<HeightOperands> input{"input"};
@@ -20,9 +24,22 @@ class HeightTestUnit : public Stage<HeightOperands, HeightResult> {
     std::optional<MemoryPort> displacement_map;  ///< if the test reads codes
 
     HeightTestUnit(const sc_core::sc_module_name& name, const UnitContext& context);
+    /// With other functions than those of the design's test, whose table, timing and registers they share.
+    HeightTestUnit(const sc_core::sc_module_name& name, const UnitContext& context,
+                   const datapath::HeightTestFunctions& functions);
+
+    void trace_signals(Signals& signals) const override;
 
   protected:
+    void reads(const HeightOperands& edge, Reads& reads) const override;
+    HeightResult process(const HeightOperands& edge, const Entries& entries) override;
+    void trace_processed(Signals& signals, const HeightOperands& edge, const HeightResult& result) const override;
+
     const datapath::Registers& registers_;
+
+  private:
+    const datapath::HeightTestFunctions& functions_;
+    datapath::HeightDecision decision_;  // on the edge decided last
 };
 
 }  // namespace tessera

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
-#include "modules/datapath/rectangle.h"
 #include "modules/datapath/triangle_pass.h"
 #include "modules/datapath/triangulate.h"
 #include "testbench/common/distinct_table.h"
@@ -48,7 +48,12 @@ std::uint32_t pixels(const datapath::ScreenPosition& i, const datapath::ScreenPo
 }  // namespace
 
 RefinementForest::RefinementForest(const MachineSetup& setup, const TexelError* errors)
-    : datapath_(setup), setup_(setup), errors_(errors) {
+    : datapath_(setup),
+      setup_(setup),
+      height_test_(functions_of(setup.registers.formats.height_test)),
+      errors_(errors) {
+    if (height_test_.compared < 0)
+        throw std::logic_error("RefinementForest: the height test does not compare one value with a threshold");
     DistinctTable known;
     const auto number_of = [&](const Vertex& vertex) {
         const std::uint32_t number = known.number_of(
@@ -79,16 +84,9 @@ RefinementForest::Edge RefinementForest::make_edge(const Vertex& i, const Vertex
     edge.normal = std::max(largest_difference(tests.displaced_normal, i.displaced_normal),
                            largest_difference(tests.displaced_normal, j.displaced_normal));
     const datapath::TexCoord& middle = pass.new_vertex[0].texture;
-    const datapath::RectangleSize size = datapath::rectangle_size(i.texture, j.texture, r.map, r.formats);
-    if (r.formats.height_test == datapath::HeightTest::curvature)
-        edge.height = datapath_.curvature_of(i.texture, j.texture, middle);
-    else if (r.formats.height_test == datapath::HeightTest::mipmap)
-        edge.height = datapath_.mipmap_difference_of(i.texture, j.texture, middle);
-    else
-        edge.height = datapath::absolute_difference(
-            static_cast<std::int64_t>(2 * datapath_.sum_around(middle, size)),
-            static_cast<std::int64_t>(datapath_.sum_around(i.texture, size) + datapath_.sum_around(j.texture, size)));
-    edge.area = size.width * size.height;
+    const datapath::HeightDecision heights = datapath_.test_heights({i.texture, j.texture, middle});
+    edge.height = heights.values[static_cast<std::size_t>(height_test_.compared)];
+    edge.weight = static_cast<std::uint32_t>(height_test_.weight(heights));
     edge.view = pixels(i.screen, j.screen);
     edge.open = datapath::tex_coord_test(i.texture, j.texture, middle, r.formats);
     edge.generation = datapath::inserted_generation(i.generation, j.generation);
@@ -147,14 +145,7 @@ bool RefinementForest::splits(const Edge& edge, const datapath::TestParameters& 
         return false;
     if (tests.normal_test && edge.normal > tests.normal_threshold)
         return true;
-    if (!tests.summed_height_test)
-        return false;
-    if (setup_.registers.formats.height_test == datapath::HeightTest::curvature)
-        return edge.height > tests.curvature_threshold;
-    if (setup_.registers.formats.height_test == datapath::HeightTest::mipmap)
-        return edge.height > tests.mipmap_threshold;
-    const std::uint64_t area = tests.summed_height_unit == datapath::SummedHeightUnit::area ? edge.area : 1;
-    return edge.height > tests.summed_height_threshold * area;
+    return tests.summed_height_test && edge.height > height_test_.limit(edge.weight, tests);
 }
 
 template <class Leaf>

@@ -44,9 +44,9 @@ class RefinementForest {
 
   private:
     struct Edge {
-        std::uint64_t height = 0;     ///< |2 S_ij - S_i - S_j|, or the curvature
+        std::uint64_t height = 0;     ///< the value that the height test compares, HeightTestFunctions::compared
         std::uint32_t normal = 0;     ///< the largest of the six differences
-        std::uint32_t area = 1;       ///< of the rectangle
+        std::uint32_t weight = 1;     ///< HeightTestFunctions::weight
         std::uint32_t view = 0;       ///< Manhattan length; both ends behind the near plane: 0, one: the largest number
         std::uint32_t middle = 0;     ///< vertex
         bool open = false;            ///< Tex Coord Test
@@ -73,6 +73,7 @@ class RefinementForest {
 
     BareRecursion datapath_;
     const MachineSetup& setup_;
+    const datapath::HeightTestFunctions& height_test_;
     const TexelError* errors_;
     std::vector<datapath::Vertex> vertices_;
     std::vector<Edge> edges_;

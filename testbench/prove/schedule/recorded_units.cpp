@@ -45,13 +45,6 @@ class Recorded : public Its {
     const std::vector<BankOfEntry> memories_;
 };
 
-template <class Its>
-std::unique_ptr<HeightTestUnit> recorded_height_test(const sc_core::sc_module_name& name, const UnitContext& context,
-                                                     PassRecord& record, const std::vector<BankOfEntry>& memories) {
-    return std::make_unique<Recorded<Its, HeightOperands>>(name, context, record, PassRecord::Reader::height_test,
-                                                           memories);
-}
-
 }  // namespace
 
 RecordedPass& PassRecord::pass(std::uint32_t number) {
@@ -129,15 +122,8 @@ std::unique_ptr<HeightTestUnit> RecordedUnits::height_test(Name name, const Unit
     const std::vector<BankOfEntry> memories{
         BankOfEntry(context.timing().*kind.table_timing, context.registers.height_table),
         BankOfEntry(context.timing().displacement_map, context.registers.displacement_map)};
-    PassRecord& record = of(context.clock);
-    switch (context.registers.formats.height_test) {
-        case datapath::HeightTest::rank: return recorded_height_test<RankTest>(name, context, record, memories);
-        case datapath::HeightTest::curvature:
-            return recorded_height_test<CurvatureTest>(name, context, record, memories);
-        case datapath::HeightTest::mipmap: return recorded_height_test<MipmapTest>(name, context, record, memories);
-        case datapath::HeightTest::summed_height: break;
-    }
-    return recorded_height_test<SummedHeightTest>(name, context, record, memories);
+    return std::make_unique<Recorded<HeightTestUnit, HeightOperands>>(name, context, of(context.clock),
+                                                                      PassRecord::Reader::height_test, memories);
 }
 
 std::unique_ptr<NormalTest> RecordedUnits::normal_test(Name name, const UnitContext& context, Parts takes) {

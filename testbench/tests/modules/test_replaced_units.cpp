@@ -25,24 +25,27 @@ using namespace tessera::testing;
 
 namespace {
 
-/// Compares half the difference: a comparator one bit narrower. The machine's own unit decides the same with twice the
+/// Compares half the difference: a comparator one bit narrower. The machine's own test decides the same with twice the
 /// threshold plus one.
-class HalvedHeightTest : public SummedHeightTest {
+class HalvedHeightTest : public datapath::SummedHeightTest {
   public:
-    using SummedHeightTest::SummedHeightTest;
-
-  protected:
-    HeightResult process(const HeightOperands& edge, const Entries& entries) override {
-        HeightResult result = SummedHeightTest::process(edge, entries);
-        const std::uint64_t half = datapath::summed_height_difference(sums_[0], sums_[1], sums_[2]) / 2;
-        result.summed_height = half > summed_height_limit(size(edge), registers_.tests);
-        return result;
+    void decide(const datapath::HeightEdge& edge, const Entries& entries, const datapath::Registers& registers,
+                datapath::HeightDecision& decision) const override {
+        SummedHeightTest::decide(edge, entries, registers, decision);
+        decision.asks = decision.values[5] / 2 > decision.values[6];
     }
 };
 
 class HalvedHeights : public UnitFactory {
+  public:
+    std::vector<const HeightTestUnit*> halved;
+
+  private:
     std::unique_ptr<HeightTestUnit> height_test(Name name, const UnitContext& context) override {
-        return std::make_unique<HalvedHeightTest>(name, context);
+        static constexpr HalvedHeightTest test{};
+        auto unit = std::make_unique<HeightTestUnit>(name, context, test);
+        halved.push_back(unit.get());
+        return unit;
     }
 };
 
@@ -150,7 +153,7 @@ class StalledHeights : public UnitFactory {
     std::unique_ptr<HeightTestUnit> height_test(Name name, const UnitContext& context) override {
         Design design = context.design;
         design.timing.stalls = {7, 300, 100};
-        return std::make_unique<SummedHeightTest>(name, UnitContext{context.clock, context.registers, design});
+        return std::make_unique<HeightTestUnit>(name, UnitContext{context.clock, context.registers, design});
     }
 };
 
@@ -161,7 +164,7 @@ class OtherThreshold : public UnitFactory {
 
   private:
     std::unique_ptr<HeightTestUnit> height_test(Name name, const UnitContext& context) override {
-        return std::make_unique<SummedHeightTest>(name, UnitContext{context.clock, registers_, context.design});
+        return std::make_unique<HeightTestUnit>(name, UnitContext{context.clock, registers_, context.design});
     }
 
     const datapath::Registers& registers_;
@@ -270,12 +273,12 @@ void expect_halved_test(const Job& job) {
     sc_core::sc_start();
 
     const unsigned tests_units = setup.design.tests_units;
-    CHECK(count_below<HalvedHeightTest>(halved) == tests_units);
-    CHECK(count_below<SummedHeightTest>(halved) == 0);
-    CHECK(count_below<SummedHeightTest>(own) == tests_units);
+    CHECK(units.halved.size() == tests_units);
+    CHECK(count_below<HeightTestUnit>(halved) == tests_units);
+    CHECK(count_below<HeightTestUnit>(own) == tests_units);
     const auto* const unit = sc_core::sc_find_object("halved.pipeline.tessellation_tests_0.summed_height_test");
     REQUIRE(unit != nullptr);
-    CHECK(typeid(*unit) == typeid(HalvedHeightTest));
+    CHECK(unit == units.halved[0]);
     CHECK(unit == &halved.pipeline.tessellation_tests[0].height_test);
 
     const EmittedMesh expected = bare_mesh(equal);

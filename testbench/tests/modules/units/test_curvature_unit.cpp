@@ -7,7 +7,7 @@
 #include "modules/datapath/midpoint.h"
 #include "modules/datapath/table_shapes.h"
 #include "modules/memories/table_memory.h"
-#include "modules/units/edge_tests/curvature.h"
+#include "modules/units/edge_tests/height_test.h"
 #include "testbench/common/random.h"
 #include "testbench/tests/support/case_table.h"
 #include "testbench/tests/support/timed_modules.h"
@@ -50,7 +50,7 @@ struct Bench : sc_core::sc_module {
     UnitContext context{clock, registers, design};
     Random random{5};
     std::vector<std::uint64_t> codes, cells;
-    std::unique_ptr<CurvatureTest> unit;
+    std::unique_ptr<HeightTestUnit> unit;
     std::unique_ptr<TableMemory> map, table;
 
     explicit Bench(const Row& row) : sc_module(sc_core::sc_module_name("bench")), registers(registers_of(row)) {
@@ -60,7 +60,7 @@ struct Bench : sc_core::sc_module {
             codes.push_back(random.natural(0, 65535));
         for (std::uint32_t cell = 0; cell < registers.height_table.columns; ++cell)
             cells.push_back(std::uint64_t{random.natural(0, 262143)} << 18 | random.natural(0, 262143));
-        unit = std::make_unique<CurvatureTest>("unit", context);
+        unit = std::make_unique<HeightTestUnit>("unit", context);
         clock.attach(*unit);
         map = std::make_unique<DisplacementMap>("displacement_map", clock, registers.displacement_map, row.memory,
                                                 row.stalls);

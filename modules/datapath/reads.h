@@ -2,16 +2,17 @@
 #include <array>
 #include <cstdint>
 
-namespace tessera {
+namespace tessera::datapath {
 
-/// The table entries that an item needs: byte addresses, grouped in requests that are made one after another. Filled in
-/// by the unit; empty if the item needs no entries.
+/// The table entries that an item needs: byte addresses, grouped in requests that are made one after another. Empty if
+/// the item needs no entries.
 class Reads {
   public:
     static constexpr unsigned most_requests = 3;
     static constexpr unsigned most_entries = 27;
 
-    /// Selects the port for the requests added next. Ports are numbered in the order of reads_through(); initially 0.
+    /// Selects the port for the requests added next. Ports are numbered in the order of Stage::reads_through();
+    /// initially 0.
     void through(unsigned port) { port_ = port; }
     /// Adds a request for one entry.
     void add(std::uint64_t address) {
@@ -50,4 +51,4 @@ class Reads {
 /// The entries read, in the order of the addresses, zero-extended.
 using Entries = std::array<std::uint64_t, Reads::most_entries>;
 
-}  // namespace tessera
+}  // namespace tessera::datapath

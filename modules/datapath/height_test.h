@@ -1,0 +1,81 @@
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "modules/datapath/multiplications.h"
+#include "modules/datapath/parameters.h"
+#include "modules/datapath/rank_view.h"
+#include "modules/datapath/reads.h"
+#include "modules/datapath/vertex.h"
+
+namespace tessera::datapath {
+
+/// An edge, as a height test sees it.
+struct HeightEdge {
+    TexCoord t_i, t_j, t_ij;
+    bool codes_known = false;              ///< with Formats::codes: both ends are displaced
+    std::uint16_t code_i = 0, code_j = 0;  ///< then d of the ends
+    EdgeInView ends{};                     ///< with Formats::distances
+};
+
+/// What a height test makes of an edge.
+struct HeightDecision {
+    bool asks = false;                      ///< for a split
+    std::uint16_t rank = 0;                 ///< by which the `greatest_rank` cut compares edges
+    std::array<std::uint64_t, 7> values{};  ///< what it was made from: HeightTestFunctions::values
+};
+
+/// A height test of a design: its table and its arithmetic. The unit (units/edge_tests/height_test.h), the device and the
+/// testbench's models call these. Functions are pure: of the edge, the entries read for it and the registers.
+class HeightTestFunctions {
+  public:
+    /// One of HeightDecision::values, as in a waveform.
+    struct Value {
+        const char* name = nullptr;
+        unsigned bits = 0;
+    };
+    /// A register of TestParameters that decides, likewise.
+    struct Threshold {
+        const char* name = nullptr;
+        unsigned bits = 0;
+        std::uint64_t value = 0;
+    };
+
+    unsigned requests;              ///< most requests of an edge to the test's table
+    unsigned codes = 0;             ///< entries of the displacement map that a short edge may read instead
+    bool second_side = false;       ///< it does so for all vertices: an on-chip map then has a second port of its own
+    bool covers_more = false;       ///< its table may cover more texels than the map (CoveredTexels)
+    bool may_read_nothing = false;  ///< it decides some edges without a read
+    std::array<Value, 7> values{};  ///< the last ones have no name: unused
+    int compared = -1;              ///< number of the value that is compared with limit(); -1: another decision
+
+    /// Bits of an entry of the test's table.
+    virtual int entry_bits(const Formats& formats) const = 0;
+    /// Columns and rows of the table, which follow from the other registers.
+    virtual void shape(const Registers& registers, TableLayout& table) const = 0;
+    /// Whether some edges read the displacement map in place of the table, through port 1.
+    virtual bool reads_codes(const Formats&) const { return codes > 0; }
+    virtual Multiplications multiplications(const Registers&) const { return {}; }
+    /// At most two; the others have no name.
+    virtual std::array<Threshold, 2> thresholds(const Registers& registers) const = 0;
+    /// What the compared value must exceed. weight: of the edge, which depends on no threshold.
+    virtual std::uint64_t limit(std::uint64_t /*weight*/, const TestParameters&) const { return 0; }
+    virtual std::uint64_t weight(const HeightDecision&) const { return 1; }
+    /// Number of values in a waveform: all that have a name, unless a design lacks the last ones.
+    virtual unsigned traced(const Formats&) const {
+        unsigned count = 0;
+        while (count < values.size() && values[count].name != nullptr)
+            ++count;
+        return count;
+    }
+
+    virtual void reads(const HeightEdge& edge, const Registers& registers, Reads& reads) const = 0;
+    virtual void decide(const HeightEdge& edge, const Entries& entries, const Registers& registers,
+                        HeightDecision& decision) const = 0;
+
+  protected:
+    constexpr explicit HeightTestFunctions(unsigned most_requests) : requests(most_requests) {}
+    ~HeightTestFunctions() = default;
+};
+
+}  // namespace tessera::datapath

@@ -1,0 +1,62 @@
+#pragma once
+#include <cstdint>
+
+#include "modules/datapath/height_test.h"
+#include "modules/datapath/rank.h"
+#include "modules/datapath/rank_view.h"
+
+namespace tessera::datapath {
+
+/// Rank Test, in place of the Summed Height Test: does the mesh need the edge's midpoint? The host has ranked every
+/// point of the base mesh's lattice beforehand.
+///
+/// (Decision: one read and one threshold instead of twelve and two. From 24 base triangles the RMS error is below that
+/// of as many triangles by the paper's tests with tuned thresholds. In the view-dependent variant the distances come
+/// with the View Test's result, so that this test follows it and needs `test_order` cheap_first: with the tests in
+/// parallel, a stream from one to the other would make one wait.)
+///
+/// Memory: one entry of the Rank Table per edge of even length: a rank, a bound, or both. In the view-dependent variant
+///       (Formats::distances) a bound comes with a radius.
+/// Arithmetic: two subtractions, an OR of their lowest bits, two compares. View-dependent also one subtraction, two
+///       leading-zero counts, three shifts and two adds.
+/// Timing: latency 1 after the entry; interval 1 by default.
+class RankTest : public HeightTestFunctions {
+  public:
+    constexpr RankTest() : HeightTestFunctions(1) {
+        covers_more = true;
+        may_read_nothing = true;
+        values = {{{"rank", 16}, {"bound", 16}, {"radius", radius_bits}, {"level", 18}}};
+    }
+
+    int entry_bits(const Formats& formats) const override { return rank_entry_bits(formats); }
+    void shape(const Registers& r, TableLayout& table) const override {
+        table.columns = r.covered.columns;
+        table.rows = r.covered.rows;
+    }
+    std::array<Threshold, 2> thresholds(const Registers& r) const override {
+        const auto bits_of = [](std::int32_t value, int bits) {
+            return static_cast<std::uint32_t>(value) & ((1u << bits) - 1);
+        };
+        return {{{"rank_threshold", rank_limit_bits, bits_of(r.tests.rank_threshold, rank_limit_bits)},
+                 {"bound_threshold", bound_limit_bits, bits_of(r.tests.bound_threshold, bound_limit_bits)}}};
+    }
+    unsigned traced(const Formats& formats) const override { return formats.distances ? 4 : 2; }
+
+    void reads(const HeightEdge& edge, const Registers& r, Reads& reads) const override {
+        if (has_lattice_midpoint(edge.t_i, edge.t_j, r.formats))
+            reads.add(rank_address(edge.t_ij, r.height_table, r.map, r.formats));
+    }
+    void decide(const HeightEdge& edge, const Entries& entries, const Registers& r,
+                HeightDecision& decision) const override {
+        const RankEntry entry =
+            has_lattice_midpoint(edge.t_i, edge.t_j, r.formats) ? rank_entry(entries[0], r.formats) : RankEntry{};
+        decision.asks = asks_by_rank(entry, edge.ends, r.tests, r.formats);
+        decision.rank = ordering_rank(entry, r.formats);
+        decision.values[0] = entry.rank;
+        decision.values[1] = entry.bound;
+        decision.values[2] = entry.radius;
+        decision.values[3] = r.formats.distances ? distance_level(edge.ends.distance) : 0;
+    }
+};
+
+}  // namespace tessera::datapath
