@@ -115,7 +115,7 @@ void Pipeline::set_table_areas() {
     const unsigned corners = across(r.map.address_u) * across(r.map.address_v);
     displacement_map.set_area(f.displacement.bits, texels);
     if (displacement_map_for_tests != nullptr)
-        displacement_map_for_tests->set_area(f.displacement.bits, height.codes);
+        displacement_map_for_tests->set_area(f.displacement.bits, height.functions->codes);
     normal_map.set_area(3 * f.normal.bits, texels);
     height_table.set_area(datapath::height_entry_bits(f), height.rectangles ? corners : 1);
 }

@@ -41,6 +41,8 @@ class HeightTestFunctions {
         std::uint64_t value = 0;
     };
 
+    virtual ~HeightTestFunctions() = default;
+
     unsigned requests;              ///< most requests of an edge to the test's table
     unsigned codes = 0;             ///< entries of the displacement map that a short edge may read instead
     bool second_side = false;       ///< it does so for all vertices: an on-chip map then has a second port of its own
@@ -75,7 +77,6 @@ class HeightTestFunctions {
 
   protected:
     constexpr explicit HeightTestFunctions(unsigned most_requests) : requests(most_requests) {}
-    ~HeightTestFunctions() = default;
 };
 
 }  // namespace tessera::datapath

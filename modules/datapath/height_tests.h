@@ -10,7 +10,7 @@
 namespace tessera::datapath {
 
 template <class Test>
-inline constexpr Test the_test{};
+inline const Test the_test{};
 
 /// One for each HeightTest, in its order.
 inline constexpr std::array<const HeightTestFunctions*, 4> height_tests{

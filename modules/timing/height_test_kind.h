@@ -23,8 +23,6 @@ struct HeightTestKind {
     UnitTiming Timing::*unit_timing = spec->timing;
     MemoryTiming Timing::*table_timing = memory->timing;
     bool rectangles = memory->rectangles;
-    unsigned requests = functions->requests;
-    unsigned codes = functions->codes;
 };
 
 /// One entry for each datapath::HeightTest, the paper's Summed Height Test first.

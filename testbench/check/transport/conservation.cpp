@@ -204,7 +204,7 @@ void add_timed(Equations& list, const MachineSetup& setup, const HostedMachine& 
         read.add_fills(list);
     list.add("requests to normal_map = vertices and edges of normal_test", normal_map.requests(),
              normal_map_requests(p, vertices, normal));
-    const std::uint64_t asked = height_test.requests * (summed_height - by_codes - off_lattice);
+    const std::uint64_t asked = height_test.functions->requests * (summed_height - by_codes - off_lattice);
     list.add("requests to " + std::string(height_test.table) + " = those of each edge tested by table",
              height_table.requests(), setup.registers.tests.summed_height_test ? asked : 0);
 
@@ -241,7 +241,7 @@ void add_machine(Equations& list, const MachineSetup& setup, const HostedMachine
                            : "edges tested = 3 per pass",
              counts.edges_tested, edges);
     add_reads(list, p, tested, datapath::map_entry_count(setup.registers.formats),
-              kind_of(setup.registers.formats.height_test).codes);
+              functions_of(setup.registers.formats.height_test).codes);
     if (setup.design.transport == Transport::non_blocking)
         add_timed(list, setup, machine, tested);
 }

@@ -78,7 +78,7 @@ Plan plan_of(const tessera::Pipeline& machine, const Rasteriser& rasteriser, con
                                                      registers.displacement_map, tested);
     plan.normal_map = table_plan(machine.normal_map, t.normal_map, t.stalls, registers.normal_map, bumped);
     plan.height_table = table_plan(machine.height_table, t.*kind.table_timing, t.stalls, registers.height_table,
-                                   kind.requests * plan.tests.height_test.pipeline.stages + 1);
+                                   kind.functions->requests * plan.tests.height_test.pipeline.stages + 1);
     return plan;
 }
 

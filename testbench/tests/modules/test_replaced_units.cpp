@@ -42,7 +42,7 @@ class HalvedHeights : public UnitFactory {
 
   private:
     std::unique_ptr<HeightTestUnit> height_test(Name name, const UnitContext& context) override {
-        static constexpr HalvedHeightTest test{};
+        static const HalvedHeightTest test{};
         auto unit = std::make_unique<HeightTestUnit>(name, context, test);
         halved.push_back(unit.get());
         return unit;

@@ -51,7 +51,7 @@ struct FullSplitRun : TimedRun {
         const HeightTestKind& kind = kind_of(pipeline.registers().formats.height_test);
         const Decisions::Evaluated& evaluated = decisions.evaluated();
         REQUIRE(pipeline.height_table.transactions() ==
-                kind.requests * (kind.rectangles ? 4 : 1) *
+                kind.functions->requests * (kind.rectangles ? 4 : 1) *
                     (evaluated.summed_height - evaluated.summed_height_by_codes));
     }
 };

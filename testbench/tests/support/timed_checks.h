@@ -109,8 +109,8 @@ inline void require_timed_conservation(const Simulation& simulation, const Hoste
     const Decisions::Evaluated& evaluated = machine.decisions.evaluated();
     const datapath::Registers& registers = simulation.setup.registers;
     const HeightTestKind& height_test = kind_of(registers.formats.height_test);
-    const std::uint64_t requests =
-        height_test.requests * (evaluated.summed_height - evaluated.summed_height_by_codes - evaluated.off_lattice);
+    const std::uint64_t requests = height_test.functions->requests *
+                                   (evaluated.summed_height - evaluated.summed_height_by_codes - evaluated.off_lattice);
     if (!height_test.rectangles)
         CHECK(p.height_table_reads() == (registers.tests.summed_height_test ? requests : 0));
     else if (registers.tests.summed_height_test)
