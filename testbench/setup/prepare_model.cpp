@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -13,6 +12,7 @@
 #include "testbench/common/error.h"
 #include "testbench/setup/base_triangles.h"
 #include "testbench/setup/formats.h"
+#include "testbench/setup/height_tests/height_test_host.h"
 #include "testbench/setup/light.h"
 #include "testbench/setup/map_displacement.h"
 #include "testbench/setup/model_scale.h"
@@ -45,55 +45,6 @@ void check_registers(const datapath::Registers& registers) {
     });
 }
 
-/// Size of a distance's LSB in world units.
-double distance_step(const datapath::Formats& formats) {
-    return std::ldexp(1.0, -formats.view_distance.fraction);
-}
-
-/// Only for radii, which exist with a bound as seen. A vertex's position is off by less than 8 LSB, half of one for
-/// each of up to 15 generations and for P', and its distance by 1 in the last place; this applies to four vertices.
-std::optional<RadiusScale> radius_scale(const PreparedScene& scene) {
-    const datapath::Formats& formats = scene.registers.formats;
-    if (!formats.distances || formats.bound_bits == 0)
-        return {};
-    const double step = distance_step(formats), position = std::ldexp(1.0, -formats.position.fraction);
-    constexpr double root_of_three = 1.7320508075688772;
-    return RadiusScale{{scene.texel_size[0] / step, scene.texel_size[1] / step, std::abs(scene.height_per_code) / step},
-                       4 * (1 + 8 * root_of_three * position / step)};
-}
-
-/// Adds remarks on the Rank Test's limits on a base mesh, and on remedies.
-void remark_on_base(const std::vector<TextureTriangle>& base, PreparedScene& scene) {
-    const RankTables& tables = scene.rank_tables;
-    std::vector<std::string> limits;
-    if (tables.least_error > 0) {
-        limits.push_back(fmt::format(
-            "errors of up to {:.2g} of full scale remain at any threshold, since midpoints do not reach every texel",
-            tables.least_error / scene.map.highest_code()));
-        if (const std::uint64_t whole = count_whole_base_edges(base, scene.registers.formats); whole > 0)
-            limits.push_back(fmt::format(
-                "{} edges of the base mesh never split: their ends are not an even number of texels apart", whole));
-    }
-    if (tables.clashes > 0)
-        limits.push_back(
-            fmt::format("{} midpoints share a texel of the Rank Table with another and use the greater rank: more "
-                        "triangles than are needed, and no bound on the error",
-                        tables.clashes));
-    if (!limits.empty())
-        scene.remarks.push_back(fmt::format(
-            "the Rank Test is limited on this base mesh: {}. Use mesh.source = \"lattice\" with a "
-            "mesh.spacing that divides each side on which the map repeats; the Summed Height, Curvature and "
-            "Mipmap Tests support any base mesh",
-            fmt::join(limits, "; ")));
-}
-
-void rank_lattice(PreparedScene& scene, const std::vector<TextureTriangle>& base) {
-    const datapath::Formats& formats = scene.registers.formats;
-    scene.rank_tables =
-        make_rank_tables(scene.map, base, formats, formats.rank_bits, formats.bound_bits, radius_scale(scene));
-    remark_on_base(base, scene);
-}
-
 /// Makes the height test's table, unless it is written from the map alone.
 void make_height_table(const TestSettings& tests, PreparedScene& scene) {
     datapath::Registers& registers = scene.registers;
@@ -104,16 +55,7 @@ void make_height_table(const TestSettings& tests, PreparedScene& scene) {
     }
     const datapath::MapGeometry covered = table_extent(registers.map, base, registers.formats);
     registers.covered = {covered.width, covered.height};
-    switch (registers.formats.height_test) {
-        case datapath::HeightTest::summed_height: break;
-        case datapath::HeightTest::rank: rank_lattice(scene, base); break;
-        case datapath::HeightTest::curvature:
-            scene.curvature_table = make_curvature_table(scene.map, base, registers.formats);
-            break;
-        case datapath::HeightTest::mipmap:
-            scene.mipmap_table = make_mipmap_table(scene.map, tests.mipmap_filter);
-            break;
-    }
+    host_of(registers.formats.height_test).make_table(tests, base, scene);
 }
 
 /// A sentence if the surface's relief is mostly the rounding of its positions; else empty.

@@ -109,4 +109,8 @@ Format view_distance_format(const datapath::TransformParameters& transform, cons
     return Format::make_signed(position.bits, position.fraction - shift);
 }
 
+double distance_step(const datapath::Formats& formats) {
+    return std::ldexp(1.0, -formats.view_distance.fraction);
+}
+
 }  // namespace tessera

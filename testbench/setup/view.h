@@ -26,6 +26,9 @@ double corner_secant(const CameraSettings& camera);
 datapath::TransformParameters make_transform(const CameraSettings& camera, const ModelScale& model_scale,
                                              const datapath::Formats& formats, std::uint64_t& saturated);
 
+/// Size of a distance's LSB in world units.
+double distance_step(const datapath::Formats& formats);
+
 /// The format of distances along the view axis: a position's width, with the point moved until the distance of the
 /// farthest corner of the position's range fits.
 datapath::Format view_distance_format(const datapath::TransformParameters& transform, const datapath::Format& position);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "testbench/explore/thresholds/threshold_level.h"
+#include "testbench/setup/height_tests/height_test_host.h"
 #include "testbench/setup/thresholds.h"
 
 namespace tessera {
@@ -23,12 +24,6 @@ datapath::Triangulation machine_name(Triangulation triangulation) {
     return triangulation == Triangulation::first    ? datapath::Triangulation::first
            : triangulation == Triangulation::second ? datapath::Triangulation::second
                                                     : datapath::Triangulation::shorter;
-}
-
-double Job::Tests::*height_threshold_of(HeightTest test) {
-    return test == HeightTest::curvature ? &Job::Tests::curvature_threshold
-           : test == HeightTest::mipmap  ? &Job::Tests::mipmap_threshold
-                                         : &Job::Tests::summed_height_threshold;
 }
 
 }  // namespace
@@ -49,7 +44,7 @@ ThresholdSearch::ThresholdSearch(RefinementForest& forest, const MachineSetup& s
       space_(space),
       on_progress_(std::move(on_progress)),
       height_test_(job.hardware.height_test),
-      height_threshold_(height_threshold_of(height_test_)) {}
+      height_threshold_(host_of(height_test_).threshold()) {}
 
 // A threshold below its register's first step becomes 0; one above all possible values lets nothing pass.
 
@@ -58,16 +53,8 @@ ThresholdSearch::Levels ThresholdSearch::normal_levels() const {
 }
 
 ThresholdSearch::Levels ThresholdSearch::summed_height_levels(SummedHeightUnit unit) const {
-    const auto highest_code = static_cast<double>(setup_.map.highest_code());
-    if (height_test_ == HeightTest::mipmap)
-        return {level_of(1 / highest_code / 2) - 1, 0};
-    if (height_test_ == HeightTest::curvature)
-        return {level_of(1 / highest_code / 8) - 1,
-                level_of(2.0 * std::max(setup_.registers.covered.columns, setup_.registers.covered.rows))};
-    if (unit == SummedHeightUnit::area)
-        return {level_of(1 / highest_code) - 1, octave};
-    const double largest = static_cast<double>(setup_.largest_rectangle_sum) / highest_code / 2;
-    return {level_of(1 / highest_code / 4) - 1, std::max(level_of(largest), 0)};
+    const HeightTestHost::Range range = host_of(height_test_).range(setup_, unit);
+    return {level_of(range.finest) - 1, level_of(range.coarsest)};
 }
 
 ThresholdSearch::Levels ThresholdSearch::view_levels() const {

@@ -1,0 +1,45 @@
+#include <cmath>
+
+#include "modules/datapath/mipmap.h"
+#include "testbench/setup/height_tests/height_test_host.h"
+#include "testbench/setup/height_tests/table_rows.h"
+#include "testbench/setup/tables/mipmap_table.h"
+#include "testbench/setup/threshold_register.h"
+
+namespace tessera {
+
+namespace {
+
+class MipmapHost : public HeightTestHost {
+  public:
+    /// Compared with |2 M_ij - M_i - M_j|, twice the height.
+    void set_thresholds(const TestSettings& tests, const datapath::Formats& formats, const ViewedScale&,
+                        datapath::TestParameters& registers) const override {
+        registers.mipmap_threshold = static_cast<std::uint32_t>(
+            to_register({"tests.mipmap_threshold", tests.mipmap_threshold, tests.summed_height,
+                         2 * static_cast<double>(formats.displacement.highest),
+                         std::ldexp(1.0, datapath::mipmap_threshold_bits(formats)) - 1, "formats.displacement_bits"}));
+    }
+    void make_table(const TestSettings& tests, const std::vector<TextureTriangle>&,
+                    PreparedScene& scene) const override {
+        scene.mipmap_table = make_mipmap_table(scene.map, tests.mipmap_filter);
+    }
+    void write_table(const PreparedScene& scene, const TableSink& sink) const override {
+        write_rows(scene.registers.height_table, sink,
+                   [&](std::uint32_t x, std::uint32_t) { return std::uint64_t{scene.mipmap_table.entries[x]}; });
+    }
+
+    double TestSettings::*threshold() const override { return &TestSettings::mipmap_threshold; }
+    Range range(const PreparedScene& scene, datapath::SummedHeightUnit) const override {
+        return {1 / static_cast<double>(scene.map.highest_code()) / 2, 1};
+    }
+};
+
+}  // namespace
+
+const HeightTestHost& mipmap_host() {
+    static const MipmapHost host;
+    return host;
+}
+
+}  // namespace tessera

@@ -1,0 +1,99 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "testbench/setup/height_tests/height_test_host.h"
+#include "testbench/setup/height_tests/table_rows.h"
+#include "testbench/setup/view.h"
+
+namespace tessera {
+
+namespace {
+
+/// Only for radii, which exist with a bound as seen. A vertex's position is off by less than 8 LSB, half of one for
+/// each of up to 15 generations and for P', and its distance by 1 in the last place; this applies to four vertices.
+std::optional<RadiusScale> radius_scale(const PreparedScene& scene) {
+    const datapath::Formats& formats = scene.registers.formats;
+    if (!formats.distances || formats.bound_bits == 0)
+        return {};
+    const double step = distance_step(formats), position = std::ldexp(1.0, -formats.position.fraction);
+    constexpr double root_of_three = 1.7320508075688772;
+    return RadiusScale{{scene.texel_size[0] / step, scene.texel_size[1] / step, std::abs(scene.height_per_code) / step},
+                       4 * (1 + 8 * root_of_three * position / step)};
+}
+
+/// Adds remarks on the Rank Test's limits on a base mesh, and on remedies.
+void remark_on_base(const std::vector<TextureTriangle>& base, PreparedScene& scene) {
+    const RankTables& tables = scene.rank_tables;
+    std::vector<std::string> limits;
+    if (tables.least_error > 0) {
+        limits.push_back(fmt::format(
+            "errors of up to {:.2g} of full scale remain at any threshold, since midpoints do not reach every texel",
+            tables.least_error / scene.map.highest_code()));
+        if (const std::uint64_t whole = count_whole_base_edges(base, scene.registers.formats); whole > 0)
+            limits.push_back(fmt::format(
+                "{} edges of the base mesh never split: their ends are not an even number of texels apart", whole));
+    }
+    if (tables.clashes > 0)
+        limits.push_back(
+            fmt::format("{} midpoints share a texel of the Rank Table with another and use the greater rank: more "
+                        "triangles than are needed, and no bound on the error",
+                        tables.clashes));
+    if (!limits.empty())
+        scene.remarks.push_back(fmt::format(
+            "the Rank Test is limited on this base mesh: {}. Use mesh.source = \"lattice\" with a "
+            "mesh.spacing that divides each side on which the map repeats; the Summed Height, Curvature and "
+            "Mipmap Tests support any base mesh",
+            fmt::join(limits, "; ")));
+}
+
+class RankHost : public HeightTestHost {
+  public:
+    void set_thresholds(const TestSettings& tests, const datapath::Formats& formats, const ViewedScale& view,
+                        datapath::TestParameters& registers) const override {
+        const double highest_code = static_cast<double>(formats.displacement.highest);
+        registers.rank_per_pixel = formats.distances && tests.rank_view == RankView::per_pixel;
+        if (formats.rank_bits > 0)
+            registers.rank_threshold =
+                formats.distances
+                    ? seen_rank_threshold(tests.rank_threshold, registers.rank_per_pixel, view)
+                    : static_cast<std::int32_t>(rank_threshold(tests.rank_threshold * highest_code, formats.rank_bits));
+        if (formats.bound_bits > 0)
+            registers.bound_threshold = formats.distances
+                                            ? seen_bound_threshold(tests.bound_threshold, view)
+                                            : static_cast<std::int32_t>(bound_threshold(
+                                                  tests.bound_threshold * highest_code, formats.bound_bits));
+    }
+    void make_table(const TestSettings&, const std::vector<TextureTriangle>& base,
+                    PreparedScene& scene) const override {
+        const datapath::Formats& formats = scene.registers.formats;
+        scene.rank_tables =
+            make_rank_tables(scene.map, base, formats, formats.rank_bits, formats.bound_bits, radius_scale(scene));
+        remark_on_base(base, scene);
+    }
+    void write_table(const PreparedScene& scene, const TableSink& sink) const override {
+        const datapath::TableLayout& layout = scene.registers.height_table;
+        const RankTables& tables = scene.rank_tables;
+        const datapath::Formats& formats = scene.registers.formats;
+        write_rows(layout, sink, [&](std::uint32_t x, std::uint32_t y) {
+            const std::size_t k = std::size_t{y} * layout.columns + x;
+            const std::uint64_t rank = tables.rank.empty() ? 0 : tables.rank[k];
+            const std::uint64_t bound = tables.bound.empty() ? 0 : tables.bound[k];
+            const std::uint64_t radius = tables.radius.empty() ? 0 : tables.radius[k];
+            return rank | (bound | radius << formats.bound_bits) << formats.rank_bits;
+        });
+    }
+};
+
+}  // namespace
+
+const HeightTestHost& rank_host() {
+    static const RankHost host;
+    return host;
+}
+
+}  // namespace tessera

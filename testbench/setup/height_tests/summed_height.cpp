@@ -1,0 +1,45 @@
+#include <algorithm>
+#include <vector>
+
+#include "testbench/setup/height_tests/height_test_host.h"
+#include "testbench/setup/height_tests/table_rows.h"
+
+namespace tessera {
+
+namespace {
+
+class SummedHeightHost : public HeightTestHost {
+  public:
+    void write_table(const PreparedScene& scene, const TableSink& sink) const override {
+        const datapath::TableLayout& layout = scene.registers.height_table;
+        const auto mask = static_cast<std::uint64_t>(scene.registers.formats.summed_height.highest);
+        std::vector<std::uint64_t> below(layout.columns, 0);
+        std::uint64_t along = 0;
+        write_rows(layout, sink, [&](std::uint32_t x, std::uint32_t y) -> std::uint64_t {
+            if (x == 0)
+                along = 0;
+            if (x == 0 || y == 0)
+                return 0;
+            along += scene.map.code(x - 1, y - 1);
+            return below[x] = (below[x] + along) & mask;
+        });
+    }
+
+    double TestSettings::*threshold() const override { return &TestSettings::summed_height_threshold; }
+    Range range(const PreparedScene& scene, datapath::SummedHeightUnit unit) const override {
+        const auto highest_code = static_cast<double>(scene.map.highest_code());
+        if (unit == datapath::SummedHeightUnit::area)
+            return {1 / highest_code, 2};
+        const double largest = static_cast<double>(scene.largest_rectangle_sum) / highest_code / 2;
+        return {1 / highest_code / 4, std::max(largest, 1.0)};
+    }
+};
+
+}  // namespace
+
+const HeightTestHost& summed_height_host() {
+    static const SummedHeightHost host;
+    return host;
+}
+
+}  // namespace tessera

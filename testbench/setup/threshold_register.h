@@ -1,0 +1,36 @@
+#pragma once
+#include <fmt/core.h>
+
+#include <cmath>
+#include <cstdint>
+
+#include "testbench/common/error.h"
+
+namespace tessera {
+
+/// A threshold to be converted to a register.
+struct Threshold {
+    const char* key;
+    double value;
+    bool used;     // by an enabled test
+    double scale;  // register's value per unit of the threshold
+    double limit;  // the register's highest value
+    const char* format_key;
+};
+
+/// Rounds down. Refuses a value that does not fit, and one that would become 0 although it is not: a test against 0 has
+/// a different meaning, and its result depends on rounding.
+inline std::uint64_t to_register(const Threshold& threshold) {
+    const double fixed = std::floor(threshold.value * threshold.scale);
+    if (fixed > threshold.limit)
+        throw InputError(fmt::format("{} = {} does not fit its register; the largest is {}", threshold.key,
+                                     threshold.value, threshold.limit / threshold.scale));
+    if (threshold.used && threshold.value > 0 && fixed < 1)
+        throw InputError(
+            fmt::format("{} = {} is less than one step of its register, {}, and would be 0 there: set it to 0, or at "
+                        "least to that step, or raise {}",
+                        threshold.key, threshold.value, 1 / threshold.scale, threshold.format_key));
+    return static_cast<std::uint64_t>(fixed);
+}
+
+}  // namespace tessera
