@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "golden/height_tests/summed_height_test.h"
+
 namespace tessera::golden {
 namespace {
 
@@ -47,7 +49,8 @@ Map::Map(int width, int height, AddressMode address_u, AddressMode address_v, co
       address_u_(address_u),
       address_v_(address_v),
       codes_(checked(width, height, codes)),
-      sums_(width, height, codes_) {}
+      sums_(width, height, codes_),
+      height_test_(std::make_shared<SummedHeightTest>()) {}
 
 std::size_t Map::texel(const glm::dvec2& t) const {
     const std::int64_t x = address(integer_part(t.x), width_, address_u_);
@@ -123,62 +126,8 @@ void Map::set_heights(std::vector<double> heights) {
     heights_ = std::move(heights);
 }
 
-Map::Rank Map::rank(const glm::dvec2& t) const {
-    const std::int64_t x = address(integer_part(t.x), rank_table_.columns, address_u_);
-    const std::int64_t y = address(integer_part(t.y), rank_table_.rows, address_v_);
-    const auto index = static_cast<std::size_t>(y * rank_table_.columns + x);
-    return {rank_table_.ranks.empty() ? 0 : rank_table_.ranks[index],
-            rank_table_.bounds.empty() ? 0 : rank_table_.bounds[index],
-            rank_table_.radii.empty() ? 0 : rank_table_.radii[index]};
-}
-
-Curvature Map::curvature(const glm::dvec2& t, int level) const {
-    const CurvatureTable& table = curvature_table_;
-    std::int64_t first = 0;
-    for (int l = 2;; ++l) {
-        const std::int64_t spacing = std::int64_t{1} << (l - 1);
-        const auto nearest = [&](std::int64_t texel) { return (texel + spacing / 2) / spacing; };
-        const std::int64_t columns = nearest(table.columns - 1) + 1, rows = nearest(table.rows - 1) + 1;
-        const bool holds_all = std::max(table.columns, table.rows) <= 2 * spacing;
-        if (l == level || holds_all) {
-            const std::int64_t x = nearest(address(integer_part(t.x), table.columns, address_u_));
-            const std::int64_t y = nearest(address(integer_part(t.y), table.rows, address_v_));
-            return table.cells[static_cast<std::size_t>(first + y * columns + x)];
-        }
-        first += columns * rows;
-    }
-}
-
-void Map::make_mipmap(MipmapFilter filter) {
-    mipmap_.clear();
-    for (std::int64_t side = 1;; side *= 2) {
-        const std::int64_t columns = (width_ + side - 1) / side, rows = (height_ + side - 1) / side;
-        std::vector<double>& level = mipmap_.emplace_back();
-        for (std::int64_t k = 0; k < columns * rows; ++k) {
-            const std::int64_t left = k % columns * side, bottom = k / columns * side;
-            const std::int64_t right = std::min<std::int64_t>(left + side, width_);
-            const std::int64_t top = std::min<std::int64_t>(bottom + side, height_);
-            double sum = 0, highest = 0;
-            for (std::int64_t y = bottom; y < top; ++y) {
-                for (std::int64_t x = left; x < right; ++x) {
-                    const double code = codes_[static_cast<std::size_t>(y * width_ + x)];
-                    sum += code;
-                    highest = std::max(highest, code);
-                }
-            }
-            const double texels = static_cast<double>((right - left) * (top - bottom));
-            level.push_back(filter == MipmapFilter::maximum ? highest : std::floor(sum / texels + 0.5));
-        }
-        if (columns == 1 && rows == 1)
-            return;
-    }
-}
-
-double Map::mipmap_height(const glm::dvec2& t, int level) const {
-    const std::int64_t side = std::int64_t{1} << level, columns = (width_ + side - 1) / side;
-    const std::int64_t x = address(integer_part(t.x), width_, address_u_) / side;
-    const std::int64_t y = address(integer_part(t.y), height_, address_v_) / side;
-    return mipmap_[static_cast<std::size_t>(level)][static_cast<std::size_t>(y * columns + x)];
+std::array<std::int64_t, 2> Map::entry(const glm::dvec2& t, std::int64_t columns, std::int64_t rows) const {
+    return {address(integer_part(t.x), columns, address_u_), address(integer_part(t.y), rows, address_v_)};
 }
 
 Rectangle Map::rectangle_size(const glm::dvec2& t_i, const glm::dvec2& t_j) const {

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -13,36 +14,11 @@ namespace tessera::golden {
 /// How one axis is read outside the map: `clamp` holds the border texel, `repeat` is periodic.
 enum class AddressMode { clamp, repeat };
 
-/// The Rank Table (4.7): for each texel of the lattice on which the base mesh lies, the error of leaving out the
-/// midpoint there, on logarithmic scales. Rows from the bottom. A list is empty if the design lacks that part.
-struct RankTable {
-    std::int64_t columns = 0, rows = 0;
-    std::vector<std::uint16_t> ranks, bounds;
-    std::vector<std::uint8_t> radii;    ///< codes; present with bounds that depend on distance
-    int highest_bound_threshold = 0;    ///< largest threshold for which the bounds hold
-    std::vector<glm::dvec2> midpoints;  ///< in texels, in the order of their bisection
-};
-
-/// An entry of the Curvature Table (4.8) for a square of 2^l texels, in codes: | xx u^2 + xy u v + yy v^2 | is the
-/// distance of the midpoint of an edge (u, v) 2^l from its chord, `rest` the root mean square of the remaining
-/// deviation of the map. All are multiples of `unit`.
-struct Curvature {
-    double xx = 0, xy = 0, yy = 0, rest = 0;
-    double unit = 0;
-};
-
-/// Levels l = 2, 3, ... in succession, each with its rows from the bottom and a cell every 2^(l - 1) texels.
-struct CurvatureTable {
-    std::int64_t columns = 0, rows = 0;  ///< texels covered
-    std::vector<Curvature> cells;
-};
-
-/// The height of a block of a mipmap (4.9): the mean of its texels, rounded to nearest, or their maximum.
-enum class MipmapFilter { mean, maximum };
-
 /// How the displacement map and the normal map are read: the texel that contains t, or interpolation between the four
 /// texels whose centres surround t.
 enum class Filter { nearest, bilinear };
+
+class HeightTest;
 
 /// A displacement map with its summed-area table and normal map (ALGORITHM.md section 2).
 /// Row 0 is v = 0, the bottom. Texture coordinates are in texels: texel x covers [x, x + 1).
@@ -86,31 +62,12 @@ class Map {
     /// Sets the displacement map's heights, in codes. Everything else is still derived from the original codes.
     void set_heights(std::vector<double> heights);
 
-    /// Uses a Rank Table, in place of the Summed Height Test. It may be larger than the map.
-    void set_ranks(RankTable table) { rank_table_ = std::move(table); }
-    const RankTable& rank_table() const { return rank_table_; }
-    bool has_ranks() const { return rank_table_.columns > 0; }
-    /// Rank and bound at the texel that contains t; 0 for parts that the table lacks.
-    struct Rank {
-        int rank = 0, bound = 0, radius = 0;
-    };
-    Rank rank(const glm::dvec2& t) const;
-    /// The value by which the cut `greatest_rank` compares midpoints: the rank or, without ranks, the bound.
-    int order(const Rank& rank) const { return rank_table_.ranks.empty() ? rank.bound : rank.rank; }
+    /// Uses a test with a table of its own in place of the Summed Height Test.
+    void set_height_test(std::shared_ptr<const HeightTest> test) { height_test_ = std::move(test); }
+    const HeightTest& height_test() const { return *height_test_; }
 
-    /// Uses a Curvature Table, in place of the Summed Height Test. It may cover more than the map.
-    void set_curvatures(CurvatureTable table) { curvature_table_ = std::move(table); }
-    const CurvatureTable& curvature_table() const { return curvature_table_; }
-    bool has_curvatures() const { return curvature_table_.columns > 0; }
-    /// The cell nearest to the texel that contains t. level: from 2 to the table's highest.
-    Curvature curvature(const glm::dvec2& t, int level) const;
-
-    /// Builds the mipmap of a Mipmap Test that replaces the Summed Height Test.
-    void make_mipmap(MipmapFilter filter);
-    /// Heights of the blocks of 2^l x 2^l texels of each level l, rows from the bottom; empty if no mipmap was built.
-    const std::vector<std::vector<double>>& mipmap() const { return mipmap_; }
-    /// The height of the block that holds the texel that contains t. level: at most the last.
-    double mipmap_height(const glm::dvec2& t, int level) const;
+    /// Column and row that address this point in a table of a size other than the map's.
+    std::array<std::int64_t, 2> entry(const glm::dvec2& t, std::int64_t columns, std::int64_t rows) const;
 
     /// Width and height in texels of the Summed Height Test's three rectangles on an edge (4.2):
     ///     n_w = min(width,  max(1, int(|du| / 2)))     n_h = min(height, max(1, int(|dv| / 4)))
@@ -140,9 +97,7 @@ class Map {
     std::vector<glm::dvec3> normals_;  // given by set_normals(), else empty
     std::vector<double> heights_;      // given by set_heights(), else empty
     SummedAreaTable sums_;
-    RankTable rank_table_;
-    CurvatureTable curvature_table_;
-    std::vector<std::vector<double>> mipmap_;
+    std::shared_ptr<const HeightTest> height_test_;
 };
 
 }  // namespace tessera::golden

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "golden/height_tests/height_test.h"
+
 namespace tessera::golden {
 namespace {
 
@@ -26,62 +28,6 @@ double displace_and_transform(Vertex& v, const Map& map, const Parameters& param
     v.screen =
         v.in_front ? glm::dvec2(glm::dot(parameters.row_x, p), glm::dot(parameters.row_y, p)) / v.w : glm::dvec2(0);
     return bumped.length;
-}
-
-// Section 4.7: both differences of the ends' coordinates are even numbers of texels, and not both zero.
-bool has_lattice_midpoint(const Vertex& i, const Vertex& j) {
-    const glm::dvec2 texels = glm::abs(i.texture - j.texture);
-    return std::fmod(texels.x, 2) == 0 && std::fmod(texels.y, 2) == 0 && texels != glm::dvec2(0);
-}
-
-// Section 4.8.
-void measure_curvature(const Vertex& i, const Vertex& j, const Vertex& m, const Map& map, EdgeEvaluation& e) {
-    const glm::dvec2 d = i.texture - j.texture;
-    const double longer = std::max(std::abs(d.x), std::abs(d.y));
-    int level = 1;
-    while (longer > std::exp2(level))
-        ++level;
-    const double length = std::exp2(level);
-    if (level == 1) {
-        const auto code = [&](const Vertex& v) { return map.code(map.texel(v.texture)); };
-        e.curvature = std::abs(code(m) - (code(i) + code(j)) / 2) * length;
-        return;
-    }
-    const Curvature c = map.curvature(m.texture, level);
-    const double u = std::floor(8 * std::abs(d.x) / length) / 8, v = std::floor(8 * std::abs(d.y) / length) / 8;
-    const double xy = d.x * d.y < 0 ? -c.xy : c.xy;
-    const auto whole_units = [&](double codes) { return std::floor(codes / c.unit) * c.unit; };
-    const double bend = whole_units(std::abs(c.xx * u * u + xy * u * v + c.yy * v * v));
-    e.curvature = (std::max(bend, c.rest) + whole_units(std::min(bend, c.rest) / 2)) * length;
-}
-
-// Section 4.9.
-double mipmap_deviation(const Vertex& i, const Vertex& j, const Vertex& m, const Map& map) {
-    const glm::dvec2 d = glm::abs(i.texture - j.texture);
-    const double half = std::max(d.x, d.y) / 2;
-    const int highest = static_cast<int>(map.mipmap().size()) - 1;
-    int level = 0;
-    while (level < highest && std::exp2(level + 1) <= half)
-        ++level;
-    const auto height = [&](const Vertex& v) { return map.mipmap_height(v.texture, level); };
-    return std::abs(height(m) - (height(i) + height(j)) / 2);
-}
-
-// Section 4.7. A rank and a bound, of r and s bits, have 6 and 5 bits in front of the point.
-bool asks_by_rank(const Map::Rank& rank, const Vertex& i, const Vertex& j, const Parameters& parameters) {
-    if (parameters.rank_view == RankView::none)
-        return rank.rank > parameters.rank_threshold || rank.bound > parameters.bound_threshold;
-    const double distance = (i.distance + j.distance) / 2, half_step = parameters.distance_step / 2;
-    const double octaves = parameters.rank_view == RankView::per_pixel ? 1 : 0.5;
-    const double seen_from = level(std::max(distance, half_step));
-    const bool ranked = rank.rank > 0 && std::ldexp(rank.rank, 16 - parameters.rank_bits) >
-                                             parameters.rank_threshold + std::floor(octaves * seen_from);
-    const double radius = std::ldexp(8 + rank.radius % 8, rank.radius / 8) * half_step;
-    if (ranked || rank.bound == 0 || (i.w + j.w) / 2 + radius < 0)
-        return ranked;
-    const double nearest = distance - radius;
-    return nearest <= 0 || std::ldexp(rank.bound, 16 - parameters.bound_bits) >
-                               parameters.bound_threshold + std::floor(level(nearest) / 2);
 }
 
 // Section 4.3. The near-plane rule is expressed by an infinite length.
@@ -161,31 +107,14 @@ EdgeEvaluation evaluate_edge(const Vertex& i, const Vertex& j, const Map& map, c
     e.normal_test = enabled.normal && e.normal_difference > parameters.normal_threshold;
 
     const Rectangle size = map.rectangle_size(i.texture, j.texture);
-    const auto sum_about = [&](const Vertex& v) {
-        return static_cast<std::int64_t>(map.sum(map.rectangle_about(v.texture, size)));
-    };
     e.rectangle_width = size.width;
     e.rectangle_height = size.height;
-    e.summed_height = static_cast<double>(std::abs(2 * sum_about(m) - (sum_about(i) + sum_about(j))));
-    // Section 4.2 multiplied by four, so that the left side of the comparison is exact.
-    e.summed_height_limit =
-        parameters.summed_height_threshold * (parameters.area ? static_cast<double>(size.width * size.height) : 4.0);
-    e.summed_height_test = enabled.summed_height && e.summed_height > e.summed_height_limit;
-    if (map.has_ranks()) {
-        const bool on_lattice = enabled.summed_height && has_lattice_midpoint(i, j);
-        const Map::Rank rank = on_lattice ? map.rank(m.texture) : Map::Rank{};
-        e.order = map.order(rank);
-        e.summed_height_test = asks_by_rank(rank, i, j, parameters);
-    }
-
-    if (map.has_curvatures()) {
-        measure_curvature(i, j, m, map, e);
-        e.summed_height_test = enabled.summed_height && e.curvature > parameters.curvature_threshold;
-    }
-
-    if (!map.mipmap().empty()) {
-        e.mipmap_deviation = mipmap_deviation(i, j, m, map);
-        e.summed_height_test = enabled.summed_height && e.mipmap_deviation > parameters.mipmap_threshold;
+    if (enabled.summed_height) {
+        const HeightTest::Verdict verdict = map.height_test().decide(i, j, m, map, parameters);
+        e.summed_height_test = verdict.asks;
+        e.order = verdict.order;
+        e.height = verdict.value;
+        e.height_limit = verdict.limit;
     }
 
     e.view_length = view_length(i, j);

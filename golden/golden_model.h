@@ -120,13 +120,10 @@ struct EdgeEvaluation {
 
     double normal_difference = 0;                            ///< largest of the six; NT = it > normal_threshold
     std::int64_t rectangle_width = 1, rectangle_height = 1;  ///< texels, all three rectangles
-    int order = 0;                   ///< with a Rank Table: the midpoint's Map::order(), 0 if it is not a lattice point
-    double summed_height = 0;        ///< |2 S(r_ij) - S(r_i) - S(r_j)|, exact
-    double summed_height_limit = 0;  ///< SHT = summed_height > it: 4 * threshold, or threshold * area
-    double curvature = 0;            ///< with a Curvature Table: CT = it > the threshold; codes times texels
-    double mipmap_deviation = 0;     ///< with a mipmap: MT = it > the threshold; codes
-    double view_length = 0;          ///< VT = it > view_threshold; Manhattan, pixels; +infinity if one end is not in
-                                     ///< front, -infinity if both are not
+    double height = 0, height_limit = 0;  ///< SHT, or the test in its place, = height > it (HeightTest::Verdict)
+    int order = 0;                        ///< likewise
+    double view_length = 0;  ///< VT = it > view_threshold; Manhattan, pixels; +infinity if one end is not in
+                             ///< front, -infinity if both are not
     /// Cosine between N' and the half vector: the greater of the two ends, and the midpoint's. HT = one of them >
     /// highlight_cosine and normal_difference > highlight_normal_threshold.
     double end_cosine = 0, midpoint_cosine = 0;

@@ -1,8 +1,12 @@
 #include "testbench/check/conformance/golden_inputs.h"
 
 #include <cstdint>
+#include <memory>
 #include <utility>
 
+#include "golden/height_tests/curvature_test.h"
+#include "golden/height_tests/mipmap_test.h"
+#include "golden/height_tests/rank_test.h"
 #include "modules/datapath/curvature.h"
 
 namespace tessera {
@@ -29,15 +33,17 @@ void set_tables(golden::Map& map, const PreparedScene& prepared) {
     if (!prepared.fitted_heights.empty())
         map.set_heights({prepared.fitted_heights.begin(), prepared.fitted_heights.end()});
     const RankTables& ranks = prepared.rank_tables;
-    std::vector<glm::dvec2> midpoints;
-    midpoints.reserve(ranks.midpoints.size());
-    for (const datapath::TexCoord& t : ranks.midpoints)
-        midpoints.push_back(glm::dvec2(t.u, t.v) * std::ldexp(1.0, -prepared.registers.formats.texture.fraction));
-    map.set_ranks({ranks.columns, ranks.rows, ranks.rank, ranks.bound, ranks.radius,
-                   static_cast<int>(ranks.highest_bound_threshold), std::move(midpoints)});
+    if (ranks.columns > 0) {
+        std::vector<glm::dvec2> midpoints;
+        midpoints.reserve(ranks.midpoints.size());
+        for (const datapath::TexCoord& t : ranks.midpoints)
+            midpoints.push_back(glm::dvec2(t.u, t.v) * std::ldexp(1.0, -prepared.registers.formats.texture.fraction));
+        map.set_height_test(std::make_shared<golden::RankTest>(
+            golden::RankTable{ranks.columns, ranks.rows, ranks.rank, ranks.bound, ranks.radius,
+                              static_cast<int>(ranks.highest_bound_threshold), std::move(midpoints)}));
+    }
     if (!prepared.mipmap_table.entries.empty())
-        map.make_mipmap(prepared.mipmap_table.filter == MipmapFilter::maximum ? golden::MipmapFilter::maximum
-                                                                              : golden::MipmapFilter::mean);
+        set_mipmap(map, prepared.mipmap_table.filter);
     const CurvatureTable& table = prepared.curvature_table;
     if (table.entries.empty())
         return;
@@ -47,7 +53,12 @@ void set_tables(golden::Map& map, const PreparedScene& prepared) {
         const double unit = std::ldexp(1.0, entry.exponent - datapath::curvature_fraction);
         curvatures.cells.push_back({entry.xx * unit, entry.xy * unit, entry.yy * unit, entry.rest * unit, unit});
     }
-    map.set_curvatures(std::move(curvatures));
+    map.set_height_test(std::make_shared<golden::CurvatureTest>(std::move(curvatures)));
+}
+
+void set_mipmap(golden::Map& map, MipmapFilter filter) {
+    map.set_height_test(std::make_shared<golden::MipmapTest>(
+        map, filter == MipmapFilter::maximum ? golden::MipmapFilter::maximum : golden::MipmapFilter::mean));
 }
 
 namespace {

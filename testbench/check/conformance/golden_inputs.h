@@ -54,6 +54,7 @@ golden::Filter golden_filter(datapath::MapFilter filter);
 
 /// Copies what golden takes as given: fitted heights, the Rank or the Curvature Table, the mipmap's filter.
 void set_tables(golden::Map& map, const PreparedScene& prepared);
+void set_mipmap(golden::Map& map, MipmapFilter filter);
 
 /// The registers as the golden model's parameters. Exact except for the transform's fourth column and the near plane,
 /// 64 bit integers that a double rounds to 53 bits.

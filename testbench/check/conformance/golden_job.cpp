@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "golden/height_tests/rank_test.h"
 #include "testbench/check/conformance/golden_inputs.h"
 #include "testbench/machine/resolve_job.h"
 
@@ -164,10 +165,10 @@ GoldenJob::GoldenJob(const Job& job, const BaseMesh& mesh, const HeightMap& heig
       map_(make_map(job_, height_map, heights(), code_range_, frames_.size, scene_, parameters_.scale)) {
     set_tables(map_, tables);
     if (job_.hardware.height_test == HeightTest::mipmap)
-        map_.make_mipmap(job_.tests.mipmap_filter == MipmapFilter::maximum ? golden::MipmapFilter::maximum
-                                                                           : golden::MipmapFilter::mean);
+        set_mipmap(map_, job_.tests.mipmap_filter);
     if (scene_.rank_view == golden::RankView::none)
-        parameters_.bound_threshold = std::min(parameters_.bound_threshold, map_.rank_table().highest_bound_threshold);
+        parameters_.bound_threshold =
+            std::min(parameters_.bound_threshold, golden::rank_table(map_).highest_bound_threshold);
 }
 
 golden::Vertex GoldenJob::vertex(std::uint32_t triangle, std::size_t corner) const {

@@ -85,7 +85,7 @@ std::string edge_text(const datapath::Registers& registers, const datapath::Tria
         "{:.6f} LSB; rectangles {} x {}, |2 S_ij - S_i - S_j| {} against {}; view length {:.6f} LSB\n",
         golden.inserted.mean_normal_length, golden.inserted.mean_tangent_length, golden.inserted.bump_length,
         std::ldexp(golden.normal_difference, formats.normal.fraction), golden.rectangle_width, golden.rectangle_height,
-        golden.summed_height, golden.summed_height_limit, std::ldexp(golden.view_length, formats.screen.fraction));
+        golden.height, golden.height_limit, std::ldexp(golden.view_length, formats.screen.fraction));
     if (registers.tests.highlight_test)
         result += fmt::format("  golden's HT {}; N'.H {:.9g} (larger end), {:.9g} (midpoint)\n",
                               int{golden.highlight_test}, golden.end_cosine, golden.midpoint_cosine);

@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "golden/height_tests/curvature_test.h"
+#include "golden/height_tests/mipmap_test.h"
+#include "golden/height_tests/rank_test.h"
 #include "testbench/check/conformance/setup_judge.h"
 
 namespace tessera {
@@ -198,21 +201,22 @@ class RegisterCheck {
                 layout("summed_height_table", table, map.width() + 1, map.height() + 1, formats_.summed_height.bits);
                 break;
             case HeightTest::rank:
-                layout("rank_table", table, static_cast<int>(map.rank_table().columns),
-                       static_cast<int>(map.rank_table().rows),
+                layout("rank_table", table, static_cast<int>(golden::rank_table(map).columns),
+                       static_cast<int>(golden::rank_table(map).rows),
                        static_cast<int>(job_.formats.rank_bits + job_.formats.bound_bits) +
                            (formats_.distances && job_.formats.bound_bits > 0 ? datapath::radius_bits : 0));
-                flag("rank_table.columns", registers_.covered.columns, number(map.rank_table().columns));
-                flag("rank_table.rows", registers_.covered.rows, number(map.rank_table().rows));
+                flag("rank_table.columns", registers_.covered.columns, number(golden::rank_table(map).columns));
+                flag("rank_table.rows", registers_.covered.rows, number(golden::rank_table(map).rows));
                 break;
             case HeightTest::curvature:
-                layout("curvature_table", table, static_cast<int>(map.curvature_table().cells.size()), 1, 36);
-                flag("curvature_table.columns", registers_.covered.columns, number(map.curvature_table().columns));
-                flag("curvature_table.rows", registers_.covered.rows, number(map.curvature_table().rows));
+                layout("curvature_table", table, static_cast<int>(golden::curvature_table(map).cells.size()), 1, 36);
+                flag("curvature_table.columns", registers_.covered.columns,
+                     number(golden::curvature_table(map).columns));
+                flag("curvature_table.rows", registers_.covered.rows, number(golden::curvature_table(map).rows));
                 break;
             case HeightTest::mipmap: {
                 std::size_t blocks = 0;
-                for (const std::vector<double>& level : map.mipmap())
+                for (const std::vector<double>& level : golden::mipmap_levels(map))
                     blocks += level.size();
                 layout("mipmap_table", table, static_cast<int>(blocks), 1, formats_.displacement.bits);
                 break;
@@ -246,11 +250,11 @@ class RegisterCheck {
                      golden.summed_height_threshold * (golden.area ? 1 : 4), rounded_down);
         check_rank_thresholds();
         // Without the test its register does not exist and reads as 0.
-        const bool curvature = golden_.map().has_curvatures();
+        const bool curvature = (golden::curvature_table(golden_.map()).columns > 0);
         judge_.judge("tests.curvature_threshold", number(tests.curvature_threshold),
                      curvature ? golden.curvature_threshold * 8 : 0, rounded_down);
         judge_.judge("tests.mipmap_threshold", tests.mipmap_threshold,
-                     golden_.map().mipmap().empty() ? 0 : golden.mipmap_threshold * 2, rounded_down);
+                     golden::mipmap_levels(golden_.map()).empty() ? 0 : golden.mipmap_threshold * 2, rounded_down);
         judge_.judge("tests.view_threshold", tests.view_threshold,
                      golden.view_threshold * lsb_per_unit(formats_.screen), rounded_down);
         flag("tests.generation_limit", tests.generation_limit, golden.generation_limit);
@@ -270,10 +274,10 @@ class RegisterCheck {
         if (scene.rank_view == golden::RankView::none) {
             judge_.judge("tests.rank_threshold", tests.rank_threshold, golden::rank_threshold(scene), rounded_down,
                          double_rounding * std::ldexp(1.0, formats_.rank_bits));
-            judge_.judge(
-                "tests.bound_threshold", tests.bound_threshold,
-                std::min(golden::bound_threshold(scene), number(golden_.map().rank_table().highest_bound_threshold)),
-                rounded_down, double_rounding * std::ldexp(1.0, formats_.bound_bits));
+            judge_.judge("tests.bound_threshold", tests.bound_threshold,
+                         std::min(golden::bound_threshold(scene),
+                                  number(golden::rank_table(golden_.map()).highest_bound_threshold)),
+                         rounded_down, double_rounding * std::ldexp(1.0, formats_.bound_bits));
             return;
         }
         // Golden's thresholds are those at a mean distance of 1.

@@ -4,7 +4,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "golden/golden_curvature.h"
+#include "golden/height_tests/curvature_test.h"
+#include "golden/height_tests/mipmap_test.h"
+#include "golden/height_tests/rank_test.h"
 #include "modules/datapath/curvature.h"
 #include "modules/datapath/map_entry.h"
 #include "testbench/check/conformance/setup_judge.h"
@@ -56,11 +58,11 @@ class TableCheck {
     void run() {
         check_displacement_map();
         check_normal_map();
-        if (golden_.map().has_ranks())
+        if ((golden::rank_table(golden_.map()).columns > 0))
             check_rank_table();
-        else if (golden_.map().has_curvatures())
+        else if ((golden::curvature_table(golden_.map()).columns > 0))
             check_curvature_table();
-        else if (!golden_.map().mipmap().empty())
+        else if (!golden::mipmap_levels(golden_.map()).empty())
             check_mipmap_table();
         else
             check_summed_height_table();
@@ -160,7 +162,7 @@ class TableCheck {
     }
 
     void check_rank_table() {
-        const golden::RankTable& table = golden_.map().rank_table();
+        const golden::RankTable& table = golden::rank_table(golden_.map());
         const bool derived = !ranks_.ranks.empty() || !ranks_.bounds.empty();
         Judge judge(result_, "rank table",
                     derived ? "every rank, bound and radius; of a double's error, both sides"
@@ -190,7 +192,7 @@ class TableCheck {
     void check_curvature_table() {
         Judge judge(result_, "curvature table",
                     "every quadratic and its rest, to nearest, in the smallest unit that fits");
-        const golden::CurvatureTable& table = golden_.map().curvature_table();
+        const golden::CurvatureTable& table = golden::curvature_table(golden_.map());
         std::vector<std::array<std::int64_t, 3>> cells;  // column, row, reach
         for (std::int64_t reach = 2;; reach *= 2) {
             const auto nearest = [&](std::int64_t texel) { return (texel + reach / 2) / reach; };
@@ -226,7 +228,7 @@ class TableCheck {
     void check_mipmap_table() {
         Judge judge(result_, "mipmap table", "every block's mean, to nearest, or maximum");
         std::vector<double> blocks;
-        for (const std::vector<double>& level : golden_.map().mipmap())
+        for (const std::vector<double>& level : golden::mipmap_levels(golden_.map()))
             blocks.insert(blocks.end(), level.begin(), level.end());
         each_entry(judge, host_.summed_height_table, registers_.height_table, static_cast<int>(blocks.size()), 1,
                    [&](std::uint32_t x, std::uint32_t, std::uint64_t entry) {
@@ -245,7 +247,7 @@ class TableCheck {
 
 golden::DerivedRanks derived_ranks(const MachineSetup& setup, const GoldenJob& golden, SetupResult& result) {
     const golden::Map& map = golden.map();
-    if (!map.has_ranks() && !map.has_curvatures())
+    if (!(golden::rank_table(map).columns > 0) && !(golden::curvature_table(map).columns > 0))
         return {};
     golden::RankSource source;
     const datapath::Formats& formats = setup.registers.formats;
@@ -263,9 +265,12 @@ golden::DerivedRanks derived_ranks(const MachineSetup& setup, const GoldenJob& g
         }
     }
     Judge judge(result, "table's extent", "texels that the base mesh covers; the order of bisections");
-    const golden::RankTable& table = map.rank_table();
-    judge.judge("columns", number(map.has_ranks() ? table.columns : map.curvature_table().columns), covered.x, exact);
-    judge.judge("rows", number(map.has_ranks() ? table.rows : map.curvature_table().rows), covered.y, exact);
+    const golden::RankTable& table = golden::rank_table(map);
+    judge.judge("columns",
+                number((golden::rank_table(map).columns > 0) ? table.columns : golden::curvature_table(map).columns),
+                covered.x, exact);
+    judge.judge("rows", number((golden::rank_table(map).columns > 0) ? table.rows : golden::curvature_table(map).rows),
+                covered.y, exact);
     source.columns = table.columns;
     source.rows = table.rows;
     source.midpoints = table.midpoints;
@@ -273,7 +278,7 @@ golden::DerivedRanks derived_ranks(const MachineSetup& setup, const GoldenJob& g
     for (const glm::dvec2& midpoint : source.midpoints)
         sorted.push_back(source.entry(midpoint));
     std::sort(sorted.begin(), sorted.end());
-    if (!map.has_ranks() || std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end())
+    if (!(golden::rank_table(map).columns > 0) || std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end())
         return {};
     source.rank_bits = golden.scene().rank_bits;
     source.bound_bits = golden.scene().bound_bits;

@@ -5,9 +5,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <memory>
 #include <vector>
 
 #include "golden/golden_model.h"
+#include "golden/height_tests/rank_test.h"
 #include "testbench/tests/golden/golden_cases.h"
 
 using namespace tessera::golden;
@@ -40,8 +42,8 @@ bool same_bits(const EdgeEvaluation& a, const EdgeEvaluation& b) {
            same_bits(a.inserted.mean_tangent_length, b.inserted.mean_tangent_length) &&
            same_bits(a.inserted.bump_length, b.inserted.bump_length) &&
            same_bits(a.normal_difference, b.normal_difference) && a.rectangle_width == b.rectangle_width &&
-           a.rectangle_height == b.rectangle_height && same_bits(a.summed_height, b.summed_height) &&
-           same_bits(a.summed_height_limit, b.summed_height_limit) && same_bits(a.view_length, b.view_length) &&
+           a.rectangle_height == b.rectangle_height && same_bits(a.height, b.height) &&
+           same_bits(a.height_limit, b.height_limit) && same_bits(a.view_length, b.view_length) &&
            a.normal_test == b.normal_test && a.summed_height_test == b.summed_height_test &&
            a.view_test == b.view_test && a.tex_coord_test == b.tex_coord_test &&
            a.generation_test == b.generation_test && a.split == b.split;
@@ -80,7 +82,7 @@ TEST_CASE("edge: each test decides operands worked out by hand") {
         EdgeEvaluation e = evaluate_edge(i, j, map, p);
         CHECK(e.rectangle_width == 4);
         CHECK(e.rectangle_height == 1);
-        CHECK(e.summed_height == 200);
+        CHECK(e.height == 200);
         CHECK(e.summed_height_test);
         CHECK(e.split);
         p.summed_height_threshold = 50;
@@ -89,12 +91,12 @@ TEST_CASE("edge: each test decides operands worked out by hand") {
         CHECK_FALSE(evaluate_edge(i, j, map, p).summed_height_test);  // 200 > 50 * 4
         p.summed_height_threshold = 49;
         e = evaluate_edge(i, j, map, p);
-        CHECK(e.summed_height_limit == 196);
+        CHECK(e.height_limit == 196);
         CHECK(e.summed_height_test);
         p.enabled.summed_height = false;
         CHECK_FALSE(evaluate_edge(i, j, map, p).split);
         // The peak under an end counts once instead of twice, with the opposite sign.
-        CHECK(evaluate_edge(vertex(8.5, 4.5), vertex(14.5, 4.5), map, p).summed_height == 100);
+        CHECK(evaluate_edge(vertex(8.5, 4.5), vertex(14.5, 4.5), map, p).height == 100);
     }
     SECTION("normal: the largest of six differences, against either end") {
         p.enabled.summed_height = false;
@@ -183,8 +185,8 @@ TEST_CASE("edge: summed height equals its definition, texel by texel") {
                 };
                 REQUIRE(e.rectangle_width <= width);
                 REQUIRE(e.rectangle_height <= height);
-                REQUIRE(e.summed_height == std::abs(2 * sum_about((i.texture + j.texture) / 2.0) -
-                                                    sum_about(i.texture) - sum_about(j.texture)));
+                REQUIRE(e.height == std::abs(2 * sum_about((i.texture + j.texture) / 2.0) - sum_about(i.texture) -
+                                             sum_about(j.texture)));
             }
         }
     }
@@ -207,7 +209,7 @@ TEST_CASE("a constant map splits no edge at any position") {
                     i = complete_base_vertex(i, map, p);
                     j = complete_base_vertex(j, map, p);
                     const EdgeEvaluation e = evaluate_edge(i, j, map, p);  // all thresholds 0
-                    REQUIRE(e.summed_height == 0);
+                    REQUIRE(e.height == 0);
                     REQUIRE(e.normal_difference == 0);
                     REQUIRE_FALSE(e.split);
                 }
@@ -230,7 +232,7 @@ TEST_CASE("a map constant over the edge's three rectangles has no summed height"
                     for (std::int64_t x = r.x; x < r.x + r.width; ++x)
                         codes[static_cast<std::size_t>(y % 64 * 64 + x % 64)] = 4711;
             }
-            REQUIRE(evaluate_edge(i, j, Map(64, 64, mode, mode, codes), {}).summed_height == 0);
+            REQUIRE(evaluate_edge(i, j, Map(64, 64, mode, mode, codes), {}).height == 0);
         }
     }
 }
@@ -302,13 +304,13 @@ TEST_CASE("edge: thresholds as the viewer sees them equal those worked out by ha
     i.texture = {0.5, 0.5};
     j.texture = {2.5, 0.5};
     const auto asks = [&](std::uint16_t rank, std::uint16_t bound, std::uint8_t radius) {
-        map.set_ranks({8,
-                       8,
-                       std::vector<std::uint16_t>(64, rank),
-                       std::vector<std::uint16_t>(64, bound),
-                       std::vector<std::uint8_t>(64, radius),
-                       0,
-                       {}});
+        map.set_height_test(std::make_shared<RankTest>(RankTable{8,
+                                                                 8,
+                                                                 std::vector<std::uint16_t>(64, rank),
+                                                                 std::vector<std::uint16_t>(64, bound),
+                                                                 std::vector<std::uint8_t>(64, radius),
+                                                                 0,
+                                                                 {}}));
         return evaluate_edge(complete_base_vertex(i, map, parameters), complete_base_vertex(j, map, parameters), map,
                              parameters)
             .summed_height_test;

@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "golden/golden_model.h"
+#include "golden/height_tests/curvature_test.h"
+#include "golden/height_tests/mipmap_test.h"
 #include "testbench/tests/golden/golden_cases.h"
 
 using namespace tessera::golden;
@@ -152,7 +154,7 @@ TEST_CASE("map: the Curvature Table's nearest cell is read at each level, the hi
     for (const auto& [columns, rows] : cells)
         for (int k = 0; k < columns * rows; ++k)
             table.cells.push_back({static_cast<double>(table.cells.size()), 0, 0, 0, 1});
-    map.set_curvatures(table);
+    const CurvatureTest test(table);
     int first = 0;
     for (int level = 2; level <= 5; ++level) {
         const auto [columns, rows] = cells[static_cast<std::size_t>(level - 2)];
@@ -163,11 +165,11 @@ TEST_CASE("map: the Curvature Table's nearest cell is read at each level, the hi
         for (int y = 0; y < 26; ++y)
             for (int x = 0; x < 30; ++x) {
                 const int cell = first + nearest(y % 13) * columns + nearest(std::min(x, 20));
-                CHECK(map.curvature({x + 0.9, y + 0.1}, level).xx == cell);
+                CHECK(test.cell({x + 0.9, y + 0.1}, level, map).xx == cell);
             }
         first += columns * rows;
     }
-    CHECK(map.curvature({3, 3}, 9).xx == map.curvature({3, 3}, 5).xx);
+    CHECK(test.cell({3, 3}, 9, map).xx == test.cell({3, 3}, 5, map).xx);
 }
 
 TEST_CASE("map: other heights replace the displacement map and nothing else") {
@@ -185,14 +187,13 @@ TEST_CASE("map: other heights replace the displacement map and nothing else") {
 
 TEST_CASE("map: a mipmap's blocks, clipped at the border, hold means rounded to nearest, or maxima") {
     Map map(3, 2, AddressMode::clamp, AddressMode::repeat, {1, 2, 9, 4, 4, 6});
-    map.make_mipmap(MipmapFilter::mean);
-    using Levels = std::vector<std::vector<double>>;
-    CHECK(map.mipmap() == Levels{{1, 2, 9, 4, 4, 6}, {3, 8}, {4}});  // 11/4, 15/2 upwards, 26/6
-    CHECK(map.mipmap_height({5, 2.5}, 0) == 9);
-    CHECK(map.mipmap_height({1.9, 1}, 1) == 3);
-    CHECK(map.mipmap_height({2, 3}, 1) == 8);
-    map.make_mipmap(MipmapFilter::maximum);
-    CHECK(map.mipmap() == Levels{{1, 2, 9, 4, 4, 6}, {4, 9}, {9}});
+    const MipmapTest means(map, MipmapFilter::mean);
+    using Levels = MipmapTest::Levels;
+    CHECK(means.levels() == Levels{{1, 2, 9, 4, 4, 6}, {3, 8}, {4}});  // 11/4, 15/2 upwards, 26/6
+    CHECK(means.height({5, 2.5}, 0, map) == 9);
+    CHECK(means.height({1.9, 1}, 1, map) == 3);
+    CHECK(means.height({2, 3}, 1, map) == 8);
+    CHECK(MipmapTest(map, MipmapFilter::maximum).levels() == Levels{{1, 2, 9, 4, 4, 6}, {4, 9}, {9}});
 }
 
 TEST_CASE("normal map: normals are central differences, also at borders and on thin axes") {

@@ -1,5 +1,6 @@
-#include "golden/golden_curvature.h"
+#include "golden/height_tests/curvature_test.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -17,6 +18,50 @@ double part_on_map(std::int64_t centre, std::int64_t reach, std::int64_t size, A
 }
 
 }  // namespace
+
+Curvature CurvatureTest::cell(const glm::dvec2& t, int level, const Map& map) const {
+    std::int64_t first = 0;
+    for (int l = 2;; ++l) {
+        const std::int64_t spacing = std::int64_t{1} << (l - 1);
+        const auto nearest = [&](std::int64_t texel) { return (texel + spacing / 2) / spacing; };
+        const std::int64_t columns = nearest(table_.columns - 1) + 1, rows = nearest(table_.rows - 1) + 1;
+        const bool holds_all = std::max(table_.columns, table_.rows) <= 2 * spacing;
+        if (l == level || holds_all) {
+            const auto [x, y] = map.entry(t, table_.columns, table_.rows);
+            return table_.cells[static_cast<std::size_t>(first + nearest(y) * columns + nearest(x))];
+        }
+        first += columns * rows;
+    }
+}
+
+HeightTest::Verdict CurvatureTest::decide(const Vertex& i, const Vertex& j, const Vertex& m, const Map& map,
+                                          const Parameters& parameters) const {
+    const auto verdict = [&](double curvature) {
+        return Verdict{curvature > parameters.curvature_threshold, curvature, parameters.curvature_threshold, 0};
+    };
+    const glm::dvec2 d = i.texture - j.texture;
+    const double longer = std::max(std::abs(d.x), std::abs(d.y));
+    int level = 1;
+    while (longer > std::exp2(level))
+        ++level;
+    const double length = std::exp2(level);
+    if (level == 1) {
+        const auto code = [&](const Vertex& v) { return map.code(map.texel(v.texture)); };
+        return verdict(std::abs(code(m) - (code(i) + code(j)) / 2) * length);
+    }
+    const Curvature c = cell(m.texture, level, map);
+    const double u = std::floor(8 * std::abs(d.x) / length) / 8, v = std::floor(8 * std::abs(d.y) / length) / 8;
+    const double xy = d.x * d.y < 0 ? -c.xy : c.xy;
+    const auto whole_units = [&](double codes) { return std::floor(codes / c.unit) * c.unit; };
+    const double bend = whole_units(std::abs(c.xx * u * u + xy * u * v + c.yy * v * v));
+    return verdict((std::max(bend, c.rest) + whole_units(std::min(bend, c.rest) / 2)) * length);
+}
+
+const CurvatureTable& curvature_table(const Map& map) {
+    static const CurvatureTable none;
+    const auto* const test = height_test_of<CurvatureTest>(map);
+    return test == nullptr ? none : test->table();
+}
 
 Curvature fit_curvature(const Map& map, std::int64_t column, std::int64_t row, std::int64_t reach) {
     const double part = part_on_map(column, reach, map.width(), map.address_u()) *

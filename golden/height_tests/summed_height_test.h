@@ -1,0 +1,13 @@
+#pragma once
+#include "golden/height_tests/height_test.h"
+
+namespace tessera::golden {
+
+/// Section 4.2. value: |2 S(r_ij) - S(r_i) - S(r_j)|, exact; limit: 4 * threshold, or threshold * area.
+class SummedHeightTest : public HeightTest {
+  public:
+    Verdict decide(const Vertex& i, const Vertex& j, const Vertex& m, const Map& map,
+                   const Parameters& parameters) const override;
+};
+
+}  // namespace tessera::golden
