@@ -165,7 +165,6 @@ constexpr void curvature_reads(const TexCoord& i, const TexCoord& j, const TexCo
 }
 
 /// The measure, from the entries read.
-template <class Entries>
 constexpr std::uint64_t curvature_of_entries(const TexCoord& i, const TexCoord& j, const Entries& read,
                                              const Formats& formats) {
     const int level = curvature_level(i, j, formats);

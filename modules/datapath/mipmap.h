@@ -84,7 +84,6 @@ constexpr void mipmap_reads(const TexCoord& i, const TexCoord& j, const TexCoord
 }
 
 /// |2 M_ij - M_i - M_j|, from these entries: twice the height by which the midpoint deviates from the chord.
-template <class Entries>
 constexpr std::uint64_t mipmap_difference(const Entries& read) {
     return absolute_difference(static_cast<std::int64_t>(2 * read[2]), static_cast<std::int64_t>(read[0] + read[1]));
 }

@@ -23,6 +23,7 @@
 #include "testbench/machine/bare_recursion.h"
 #include "testbench/machine/inputs.h"
 #include "testbench/machine/simulation.h"
+#include "testbench/setup/height_tests/height_test_host.h"
 
 namespace tessera {
 
@@ -107,8 +108,9 @@ Searched choose_tests(const TuneOrder& order, TuneRequest& request) {
     Searched searched;
     searched.ranks = by_job ? hardware.height_test == HeightTest::rank : listed("rank");
     std::optional<HeightTest> of_heights;
-    for (const HeightTest test : {HeightTest::summed_height, HeightTest::curvature, HeightTest::mipmap}) {
-        if (!listed(name_of(test)))
+    for (std::size_t k = 0; k < height_test_kinds.size(); ++k) {
+        const auto test = static_cast<HeightTest>(k);
+        if (host_of(test).threshold() == nullptr || !listed(name_of(test)))
             continue;
         if (of_heights)
             throw InputError(fmt::format("--tests: {} and {} exclude each other; tune with one of them",

@@ -3,9 +3,13 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
+#include "modules/timing/height_test_kind.h"
 #include "testbench/job/job_choices.h"
 #include "testbench/job/toml_text.h"
+#include "testbench/setup/height_tests/height_test_host.h"
 
 namespace tessera {
 
@@ -31,6 +35,22 @@ std::string figures_text(const TunedFigures& figures) {
 /// "off" or the threshold.
 std::string threshold_text(bool on, double threshold) {
     return on ? toml_number(threshold) : "off";
+}
+
+std::string height_threshold_text(HeightTest test, const Job::Tests& tests) {
+    const std::string threshold = threshold_text(tests.summed_height, tests.*host_of(test).threshold());
+    return test == HeightTest::summed_height && tests.summed_height
+               ? fmt::format("{}, {}", threshold, name_of(tests.summed_height_unit))
+               : threshold;
+}
+
+/// The tests that may be in the Summed Height Test's place, and are decided by one threshold.
+std::vector<HeightTest> other_height_tests() {
+    std::vector<HeightTest> tests;
+    for (std::size_t k = 1; k < height_test_kinds.size(); ++k)
+        if (const auto test = static_cast<HeightTest>(k); host_of(test).threshold() != nullptr)
+            tests.push_back(test);
+    return tests;
 }
 
 std::string rest_text(const TuneRequest& request, const TunedFigures& figures) {
@@ -64,14 +84,9 @@ std::string tune_text(const TuneRequest& request, const TuneResult& result, cons
     if (request.bases[result.base].ranks)
         row(request.goal.largest ? "Bound Test" : "Rank Test",
             toml_number(request.goal.largest ? tests.bound_threshold : tests.rank_threshold));
-    else if (result.job.hardware.height_test == HeightTest::curvature)
-        row("Curvature Test", threshold_text(tests.summed_height, tests.curvature_threshold));
-    else if (result.job.hardware.height_test == HeightTest::mipmap)
-        row("Mipmap Test", threshold_text(tests.summed_height, tests.mipmap_threshold));
     else
-        row("Summed Height Test",
-            threshold_text(tests.summed_height, tests.summed_height_threshold) +
-                (tests.summed_height ? fmt::format(", {}", name_of(tests.summed_height_unit)) : std::string{}));
+        row(kind_of(result.job.hardware.height_test).title,
+            height_threshold_text(result.job.hardware.height_test, tests));
     row("View Test", threshold_text(tests.view, tests.view_threshold));
     row("generation limit", tests.generation ? std::to_string(tests.generation_limit) : "off");
     row("triangulation", std::string(name_of(result.point.triangulation)));
@@ -130,10 +145,13 @@ std::string tune_json(const TuneRequest& request, const TuneResult& result, cons
 }
 
 std::string tried_csv(const TuneRequest& request, const TuneResult& result, const ErrorUnit& unit) {
-    std::string text = fmt::format(
+    const std::vector<HeightTest> others = other_height_tests();
+    std::string text =
         "base,height_test,normal_threshold,summed_height_threshold,summed_height_unit,view_threshold,generation_limit,"
-        "triangulation,curvature_threshold,mipmap_threshold,rank_threshold,bound_threshold,triangles,rms [{0}],max [{0}]\n",
-        unit.name());
+        "triangulation,";
+    for (const HeightTest test : others)
+        text += fmt::format("{}_threshold,", name_of(test));
+    text += fmt::format("rank_threshold,bound_threshold,triangles,rms [{0}],max [{0}]\n", unit.name());
     for (const TriedPoint& tried : result.tried) {
         const Job::Tests& tests = tried.point.tests;
         const Outcome& outcome = tried.point.outcome;
@@ -142,14 +160,15 @@ std::string tried_csv(const TuneRequest& request, const TuneResult& result, cons
         const auto of = [&](HeightTest test, double threshold, bool used = true) {
             return threshold_text(tests.summed_height && kind == test && used, threshold);
         };
+        text += fmt::format("\"{}\",{},{},{},{},{},{},{},", base.name(), name_of(kind),
+                            threshold_text(tests.normal, tests.normal_threshold),
+                            of(HeightTest::summed_height, tests.summed_height_threshold),
+                            name_of(tests.summed_height_unit), threshold_text(tests.view, tests.view_threshold),
+                            tests.generation_limit, name_of(tried.point.triangulation));
+        for (const HeightTest test : others)
+            text += of(test, tests.*host_of(test).threshold()) + ",";
         text +=
-            fmt::format("\"{}\",{},{},{},{},{},{},{},{},{},{},{},{},{:.6g},{:.6g}\n", base.name(), name_of(kind),
-                        threshold_text(tests.normal, tests.normal_threshold),
-                        of(HeightTest::summed_height, tests.summed_height_threshold), name_of(tests.summed_height_unit),
-                        threshold_text(tests.view, tests.view_threshold), tests.generation_limit,
-                        name_of(tried.point.triangulation), of(HeightTest::curvature, tests.curvature_threshold),
-                        of(HeightTest::mipmap, tests.mipmap_threshold),
-                        of(HeightTest::rank, tests.rank_threshold, !request.goal.largest),
+            fmt::format("{},{},{},{:.6g},{:.6g}\n", of(HeightTest::rank, tests.rank_threshold, !request.goal.largest),
                         of(HeightTest::rank, tests.bound_threshold, request.goal.largest), outcome.triangles,
                         outcome.rms / unit.model_units, outcome.max / unit.model_units);
     }

@@ -53,7 +53,7 @@ std::uint64_t measure(const MachineSetup& setup, const datapath::TexCoord& i, co
     datapath::Registers r = setup.registers;
     shape_tables(r);
     r.displacement_map.base = r.height_table.base = 0;
-    std::array<std::uint64_t, 3> read{};
+    datapath::Entries read{};
     std::size_t count = 0;
     if (r.formats.height_test == datapath::HeightTest::mipmap) {
         mipmap_reads(i, j, ij, r, [&](std::uint64_t address) {

@@ -139,7 +139,7 @@ TEST_CASE("CT: every edge of narrow formats measures and decides alike from both
         return bits >> (address >= r.height_table.base ? 64 - curvature_entry_bits : 64 - 16);
     };
     const auto measure = [&](const TexCoord& i, const TexCoord& j) {
-        std::array<std::uint64_t, 3> read{};
+        Entries read{};
         std::size_t count = 0;
         bool inside = true;
         curvature_reads(i, j, midpoint(i, j), r, [&](std::uint64_t address) {

@@ -58,8 +58,8 @@ TEST_CASE("mipmap: the threshold is twice the midpoint's deviation from the chor
                 for (tests.mipmap_threshold = 0; tests.mipmap_threshold < 32; ++tests.mipmap_threshold) {
                     const double deviation = std::abs(static_cast<double>(ij) - static_cast<double>(i + j) / 2);
                     const bool splits = deviation > tests.mipmap_threshold / 2.0;
-                    REQUIRE(mipmap_test(mipmap_difference(std::array{i, j, ij}), tests) == splits);
-                    REQUIRE(mipmap_test(mipmap_difference(std::array{j, i, ij}), tests) == splits);
+                    REQUIRE(mipmap_test(mipmap_difference(Entries{i, j, ij}), tests) == splits);
+                    REQUIRE(mipmap_test(mipmap_difference(Entries{j, i, ij}), tests) == splits);
                 }
 }
 

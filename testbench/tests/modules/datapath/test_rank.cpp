@@ -53,7 +53,7 @@ TEST_CASE("an entry's rank is in the bits below its bound", "[rank]") {
             CHECK(entry.rank == rank);
             CHECK(entry.bound == bound);
             CHECK(ordering_rank(entry, formats) == (rank_bits > 0 ? rank : bound));
-            CHECK(height_entry_bits(formats) == rank_bits + bound_bits);
+            CHECK(rank_entry_bits(formats) == rank_bits + bound_bits);
         }
     }
 }

@@ -96,12 +96,12 @@ TEST_CASE("a radius has four significant bits and an exponent", "[rank]") {
 
 TEST_CASE("an entry's radius is in the bits above its bound, if it has a bound", "[rank]") {
     const Formats formats = with_distances(6, 9);
-    REQUIRE(height_entry_bits(formats) == 6 + 9 + 8);
+    REQUIRE(rank_entry_bits(formats) == 6 + 9 + 8);
     const RankEntry entry = rank_entry(0x15u | 0x155u << 6 | std::uint64_t{0xa5} << 15, formats);
     CHECK(entry.rank == 0x15);
     CHECK(entry.bound == 0x155);
     CHECK(entry.radius == 0xa5);
-    CHECK(height_entry_bits(with_distances(8, 0)) == 8);
+    CHECK(rank_entry_bits(with_distances(8, 0)) == 8);
     CHECK(rank_entry(0xff, with_distances(8, 0)).radius == 0);
 }
 
