@@ -127,7 +127,7 @@ struct Bench {
         operands.new_vertices = of_base_triangle(tag) ? 7 : 0;
         const unsigned tests = says(tag);
         normal_operands.items.push_back(operands);
-        height_operands.items.push_back({tag, {}, {}, {}});
+        height_operands.items.push_back({{}, tag});
         tex_coord_results.items.push_back(
             {tag, {number, 7}, (tests & datapath::tex_coord_bit) != 0, (tests & datapath::generation_bit) != 0});
         view_results.items.push_back({tag, (tests & datapath::view_bit) != 0});

@@ -151,7 +151,7 @@ struct Bench {
             operands.tag = tag;
             its.normal_operands.items.push_back(operands);
             const unsigned tests = says(tag);
-            its.height_operands.items.push_back({tag, {}, {}, {}});
+            its.height_operands.items.push_back({{}, tag});
             its.tex_coord_results.items.push_back({tag,
                                                    {triangle, tag.part},
                                                    (tests & datapath::tex_coord_bit) != 0,
