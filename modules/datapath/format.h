@@ -21,6 +21,14 @@ struct Format {
     }
 };
 
+/// The least bits that number this many values, at least 1.
+constexpr int bits_for(std::uint64_t values) {
+    int bits = 1;
+    while (bits < 63 && std::uint64_t{1} << bits < values)
+        ++bits;
+    return bits;
+}
+
 /// The height test of a design, which has its own table. The paper's is `summed_height`.
 enum class HeightTest : std::uint8_t { summed_height, rank, curvature, mipmap };
 

@@ -1,20 +1,13 @@
 #include "modules/memories/table_memory.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "modules/memories/line_cache.h"
 #include "modules/stage/signals.h"
 
 namespace tessera {
 namespace {
-
-/// Enough to number them.
-std::uint64_t bits_for(std::uint64_t entries) {
-    std::uint64_t bits = 1;
-    while (std::uint64_t{1} << bits < entries)
-        ++bits;
-    return bits;
-}
 
 /// The entries of a table, or of its cache, once for each port.
 std::uint64_t copied_entries(const datapath::TableLayout& layout, const MemoryTiming& timing) {
@@ -25,29 +18,30 @@ std::uint64_t copied_entries(const datapath::TableLayout& layout, const MemoryTi
 
 }  // namespace
 
-TableMemory::TableMemory(const sc_core::sc_module_name& name, CycleScheduler& clock,
+TableMemory::TableMemory(const sc_core::sc_module_name& name, CycleScheduler& clock, std::shared_ptr<Storage> storage,
                          const datapath::TableLayout& layout, const MemoryTiming& timing, const StallParameters& stalls,
                          Channel* off_chip)
     : MemoryServer(name, clock, timing.buffer, stalls),
-      storage_(std::make_shared<Storage>(layout.base,
-                                         layout.bytes() + (timing.cache.bytes == 0 ? 0 : timing.cache.line_bytes))),
+      storage_(std::move(storage)),
       ports_(timing, layout),
       waiting_requests_(std::uint64_t{timing.buffer} + timing.window),
       copied_entries_(copied_entries(layout, timing)),
-      address_bits_(bits_for(std::uint64_t{layout.rows} * layout.columns)),
-      channel_(timing.cache.bytes == 0 ? nullptr : off_chip) {
+      address_bits_(static_cast<std::uint64_t>(datapath::bits_for(std::uint64_t{layout.rows} * layout.columns))),
+      channel_(timing.cache.bytes == 0 ? nullptr : off_chip) {}
+
+TableMemory::TableMemory(const sc_core::sc_module_name& name, CycleScheduler& clock,
+                         const datapath::TableLayout& layout, const MemoryTiming& timing, const StallParameters& stalls,
+                         Channel* off_chip)
+    : TableMemory(name, clock,
+                  std::make_shared<Storage>(layout.base,
+                                            layout.bytes() + (timing.cache.bytes == 0 ? 0 : timing.cache.line_bytes)),
+                  layout, timing, stalls, off_chip) {
     storage_->all();
 }
 
 TableMemory::TableMemory(const sc_core::sc_module_name& name, CycleScheduler& clock, const TableMemory& first_side,
                          const datapath::TableLayout& layout, const MemoryTiming& timing, const StallParameters& stalls)
-    : MemoryServer(name, clock, timing.buffer, stalls),
-      storage_(first_side.storage_),
-      ports_(timing, layout),
-      waiting_requests_(std::uint64_t{timing.buffer} + timing.window),
-      copied_entries_(copied_entries(layout, timing)),
-      address_bits_(bits_for(std::uint64_t{layout.rows} * layout.columns)),
-      channel_(nullptr) {}
+    : TableMemory(name, clock, first_side.storage_, layout, timing, stalls, nullptr) {}
 
 void TableMemory::set_area(int entry_bits, unsigned entries_read) {
     area_.register_bits = waiting_requests_ * entries_read * address_bits_;

@@ -52,6 +52,9 @@ class TableMemory : public MemoryServer {
     void trace_signals(Signals& signals) const override;
 
   private:
+    TableMemory(const sc_core::sc_module_name& name, CycleScheduler& clock, std::shared_ptr<Storage> storage,
+                const datapath::TableLayout& layout, const MemoryTiming& timing, const StallParameters& stalls,
+                Channel* off_chip);
     std::uint64_t ready(const MemoryRequest& request) const override;
     std::uint64_t serve(MemoryRequest& request, std::uint64_t cycle) override;
     void b_transport(int id, MemoryRequest& request, sc_core::sc_time& delay) override;

@@ -69,10 +69,7 @@ constexpr int tag_bits(const Design& design) {
     // In the family design one triangle is being joined in Tessellation, and one is being tested.
     const unsigned triangles = triangles_ahead_of_parts(design) + 1 + design.timing.pass_or_tessellate.buffer +
                                (design.work == Work::family ? 2 : 0);
-    int bits = 1;
-    while (bits < 32 && std::uint64_t{1} << bits < triangles)
-        ++bits;
-    return bits;
+    return datapath::bits_for(triangles);
 }
 
 /// Width of the tag in a run. In functional mode, where any number of triangles may overtake a waiting one, the tag is

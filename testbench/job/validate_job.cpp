@@ -61,7 +61,8 @@ void check_mesh(const Job::Mesh& mesh, Faults& faults) {
     faults.unless((mesh.spacing & (mesh.spacing - 1)) == 0,
                   "`mesh.spacing` = {}: a lattice needs a power of two, so that midpoints are at texel centres: set "
                   "mesh.spacing = {}",
-                  mesh.spacing, std::int64_t{1} << (bits_for(mesh.spacing + 1) - 1));
+                  mesh.spacing,
+                  std::int64_t{1} << (datapath::bits_for(static_cast<std::uint64_t>(mesh.spacing) + 1) - 1));
     const bool round = mesh.source == MeshSource::cylinder || mesh.source == MeshSource::sphere;
     faults.unless(!round || mesh.columns == 0 || mesh.columns >= 3,
                   "`mesh.columns` = {}, but a {} needs 3 or more to close: set mesh.columns = 3 or more", mesh.columns,
@@ -82,7 +83,7 @@ void check_map(const Job& job, Faults& faults) {
                       "`map.width` = {} by `map.height` = {}, but `formats.texture_integer` = {} addresses at most {} "
                       "texels a side: set formats.texture_integer = {}, or map.width and map.height to at most {}",
                       map.width, map.height, job.formats.texture_integer, most,
-                      bits_for(std::max(map.width, map.height)), most);
+                      datapath::bits_for(static_cast<std::uint64_t>(std::max(map.width, map.height))), most);
     }
 }
 

@@ -69,7 +69,8 @@ void check_camera(const CameraSettings& camera, const FormatSettings& formats, F
                   text_of(up), text_of(view), text_of(across(view)));
     const std::int64_t integer_bits = formats.screen_bits - formats.screen_fraction - 1;
     const std::int64_t most = integer_bits < 0 ? 0 : std::int64_t{1} << integer_bits;
-    const std::int64_t needed = bits_for(std::max(camera.viewport_width, camera.viewport_height)) + 1;
+    const std::int64_t needed =
+        datapath::bits_for(static_cast<std::uint64_t>(std::max(camera.viewport_width, camera.viewport_height))) + 1;
     const std::int64_t fraction =
         std::min<std::int64_t>(formats.screen_fraction, datapath::FormatLimits::screen_bits.most - needed);
     faults.unless(camera.viewport_width <= most && camera.viewport_height <= most,
@@ -103,7 +104,7 @@ void check_formats(const FormatSettings& formats, const TestSettings& tests, Fau
                   "`tests.generation_limit` = {}, but `formats.generation_bits` = {} counts to {}: set "
                   "tests.generation_limit = {}, or formats.generation_bits = {}",
                   tests.generation_limit, formats.generation_bits, generations - 1, generations - 1,
-                  bits_for(tests.generation_limit + 1));
+                  datapath::bits_for(static_cast<std::uint64_t>(tests.generation_limit) + 1));
 }
 
 /// Checks each member of `Group`, a part of SceneSettings, against its declared range.
@@ -158,13 +159,6 @@ void check_ranges(const SceneSettings& settings, Faults& faults) {
 bool are_apart(const std::array<double, 3>& a, const std::array<double, 3>& b) {
     const glm::dvec3 first = vector(a), second = vector(b);
     return safe_length(second - first) > 1e-9 * std::max(safe_length(first), safe_length(second));
-}
-
-int bits_for(std::int64_t values) {
-    int bits = 0;
-    while (std::int64_t{1} << bits < values)
-        ++bits;
-    return bits;
 }
 
 std::vector<std::string> setting_faults(const CameraSettings& camera, const FormatSettings& formats,

@@ -16,9 +16,6 @@ std::vector<std::string> setting_faults(const CameraSettings& camera, const Form
 /// Whether two points of a camera give a direction.
 bool are_apart(const std::array<double, 3>& a, const std::array<double, 3>& b);
 
-/// The least number of bits that count to `values` - 1.
-int bits_for(std::int64_t values);
-
 /// Throws InputError unless every value is set, within its range, and possible.
 void check_settings(const SceneSettings& settings);
 
