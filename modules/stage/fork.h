@@ -29,7 +29,7 @@ class Fork {
             return;
         }
         if constexpr (std::is_same_v<Payload, Item>)
-            only_output_ = count_ == 0 && only == all_parts ? &output : nullptr;
+            only_output_ = count_ == 0 && only == all_parts && select == nullptr ? &output : nullptr;
         else
             only_output_ = nullptr;
         to_[count_] = std::make_unique<To<Payload>>(output, select);
@@ -89,27 +89,25 @@ class Fork {
         To(StreamOutput<Payload>& output, Payload (*select)(const Item&)) : output_(output), select_(select) {}
 
         bool deliver(Item& item) override {
-            if constexpr (std::is_same_v<Payload, Item>) {
-                return output_.deliver(item);
-            } else {
-                if (output_.free())
-                    selected_ = select_(item);
-                return output_.deliver(selected_);
-            }
+            if constexpr (std::is_same_v<Payload, Item>)
+                if (select_ == nullptr)
+                    return output_.deliver(item);
+            if (output_.free())
+                selected_ = select_(item);
+            return output_.deliver(selected_);
         }
         void transport(Item& item, sc_core::sc_time& delay) override {
-            if constexpr (std::is_same_v<Payload, Item>) {
-                output_.transport(item, delay);
-            } else {
-                Payload selected = select_(item);
-                output_.transport(selected, delay);
-            }
+            if constexpr (std::is_same_v<Payload, Item>)
+                if (select_ == nullptr)
+                    return output_.transport(item, delay);
+            Payload selected = select_(item);
+            output_.transport(selected, delay);
         }
         const sc_core::sc_object* blocked_by() const override { return output_.free() ? nullptr : output_.consumer(); }
 
       private:
         StreamOutput<Payload>& output_;
-        Payload (*select_)(const Item&);
+        Payload (*select_)(const Item&);  // null: the whole item
         Payload selected_{};
     };
 

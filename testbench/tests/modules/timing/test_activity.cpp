@@ -145,7 +145,7 @@ TEST_CASE("fork: reports the consumer that blocks it, and has at most four outpu
 
 TEST_CASE("fork: an output gets only its parts, and only the fields it needs, in both modes") {
     struct Bench : sc_core::sc_module {
-        StreamOutput<ScreenPoint> all{"all"}, edges{"edges"};
+        StreamOutput<ScreenPoint> all{"all"}, edges{"edges"}, moved{"moved"};
         StreamOutput<ScreenCorner> vertices{"vertices"};
         Fork<ScreenPoint> fork;
         explicit Bench(const sc_core::sc_module_name& name) : sc_module(name) {
@@ -153,14 +153,21 @@ TEST_CASE("fork: an output gets only its parts, and only the fields it needs, in
             fork.add(edges, edge_parts);
             const auto corner = +[](const ScreenPoint& point) { return ScreenCorner{point.tag, point.screen}; };
             fork.add(vertices, corner, vertex_parts);
+            const auto move = +[](const ScreenPoint& point) {
+                ScreenPoint made = point;
+                ++made.screen.x;
+                return made;
+            };
+            fork.add(moved, move, all_parts);
         }
     } bench("bench");
     CycleScheduler clock("clock", sc_core::sc_time(10, sc_core::SC_PS));
-    Sink<ScreenPoint> all("all", clock), edges("edges", clock);
+    Sink<ScreenPoint> all("all", clock), edges("edges", clock), moved("moved", clock);
     Sink<ScreenCorner> vertices("vertices", clock);
     bench.all.bind(all.in);
     bench.edges.bind(edges.in);
     bench.vertices.bind(vertices.in);
+    bench.moved.bind(moved.in);
     const auto parts_of_items = [](const auto& sink) {
         std::vector<int> parts;
         for (const auto& item : sink.items)
@@ -184,6 +191,10 @@ TEST_CASE("fork: an output gets only its parts, and only the fields it needs, in
     CHECK(parts_of_items(edges) == std::vector<int>{7, 6});
     CHECK(parts_of_items(vertices) == std::vector<int>{2, 0});
     CHECK(vertices.items.front().screen.x == 5);
+    CHECK(all.items.front().screen.x == 5);
+    CHECK(parts_of_items(moved) == parts_of_items(all));
+    for (const ScreenPoint& made : moved.items)
+        CHECK(made.screen.x == 6);
 }
 
 TEST_CASE("per triangle: entries are found by tag, closed in any order, and the store grows") {
