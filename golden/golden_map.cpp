@@ -53,8 +53,7 @@ Map::Map(int width, int height, AddressMode address_u, AddressMode address_v, co
       height_test_(std::make_shared<SummedHeightTest>()) {}
 
 std::size_t Map::texel(const glm::dvec2& t) const {
-    const std::int64_t x = address(integer_part(t.x), width_, address_u_);
-    const std::int64_t y = address(integer_part(t.y), height_, address_v_);
+    const auto [x, y] = entry(t, width_, height_);
     return static_cast<std::size_t>(y * width_ + x);
 }
 

@@ -66,7 +66,7 @@ class Map {
     void set_height_test(std::shared_ptr<const HeightTest> test) { height_test_ = std::move(test); }
     const HeightTest& height_test() const { return *height_test_; }
 
-    /// Column and row that address this point in a table of a size other than the map's.
+    /// Column and row of the entry for t in a table of this size, addressed like the map.
     std::array<std::int64_t, 2> entry(const glm::dvec2& t, std::int64_t columns, std::int64_t rows) const;
 
     /// Width and height in texels of the Summed Height Test's three rectangles on an edge (4.2):

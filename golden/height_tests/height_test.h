@@ -29,4 +29,9 @@ const Test* height_test_of(const Map& map) {
     return dynamic_cast<const Test*>(&map.height_test());
 }
 
+template <class Test>
+bool has(const Map& map) {
+    return height_test_of<Test>(map) != nullptr;
+}
+
 }  // namespace tessera::golden

@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "modules/datapath/multiplications.h"
@@ -18,11 +19,14 @@ struct HeightEdge {
     EdgeInView ends{};                     ///< with Formats::distances
 };
 
+/// Most values of a HeightDecision.
+inline constexpr std::size_t height_values = 7;
+
 /// What a height test makes of an edge.
 struct HeightDecision {
-    bool asks = false;                      ///< for a split
-    std::uint16_t rank = 0;                 ///< by which the `greatest_rank` cut compares edges
-    std::array<std::uint64_t, 7> values{};  ///< what it was made from: HeightTestFunctions::values
+    bool asks = false;                                  ///< for a split
+    std::uint16_t rank = 0;                             ///< by which the `greatest_rank` cut compares edges
+    std::array<std::uint64_t, height_values> values{};  ///< what it was made from: HeightTestFunctions::values
 };
 
 /// A height test of a design: its table and its arithmetic. The unit (units/edge_tests/height_test.h), the device and the
@@ -43,13 +47,13 @@ class HeightTestFunctions {
 
     virtual ~HeightTestFunctions() = default;
 
-    unsigned requests;              ///< most requests of an edge to the test's table
-    unsigned codes = 0;             ///< entries of the displacement map that a short edge may read instead
-    bool second_side = false;       ///< it does so for all vertices: an on-chip map then has a second port of its own
-    bool covers_more = false;       ///< its table may cover more texels than the map (CoveredTexels)
-    bool may_read_nothing = false;  ///< it decides some edges without a read
-    std::array<Value, 7> values{};  ///< the last ones have no name: unused
-    int compared = -1;              ///< number of the value that is compared with limit(); -1: another decision
+    unsigned requests;         ///< of an edge to the test's table, unless it reads codes or nothing
+    unsigned codes = 0;        ///< entries of the displacement map that a short edge may read instead
+    bool second_side = false;  ///< also codes of vertices not yet displaced: an on-chip map has a second side for it
+    bool covers_more = false;  ///< its table may cover more texels than the map (CoveredTexels)
+    bool may_read_nothing = false;              ///< it decides some edges without a read
+    std::array<Value, height_values> values{};  ///< the last ones have no name: unused
+    int compared = -1;  ///< number of the value that is compared with limit(); -1: another decision
 
     /// Bits of an entry of the test's table.
     virtual int entry_bits(const Formats& formats) const = 0;
@@ -57,10 +61,11 @@ class HeightTestFunctions {
     virtual void shape(const Registers& registers, TableLayout& table) const = 0;
     /// Whether some edges read the displacement map in place of the table, through port 1.
     virtual bool reads_codes(const Formats&) const { return codes > 0; }
+    /// Of one edge.
     virtual Multiplications multiplications(const Registers&) const { return {}; }
     /// At most two; the others have no name.
     virtual std::array<Threshold, 2> thresholds(const Registers& registers) const = 0;
-    /// What the compared value must exceed. weight: of the edge, which depends on no threshold.
+    /// What the compared value must exceed. weight: of the edge, whatever the thresholds.
     virtual std::uint64_t limit(std::uint64_t /*weight*/, const TestParameters&) const { return 0; }
     virtual std::uint64_t weight(const HeightDecision&) const { return 1; }
     /// Number of values in a waveform: all that have a name, unless a design lacks the last ones.
@@ -71,7 +76,9 @@ class HeightTestFunctions {
         return count;
     }
 
+    /// Adds the entries that an edge needs.
     virtual void reads(const HeightEdge& edge, const Registers& registers, Reads& reads) const = 0;
+    /// entries: those, in their order; the others are not set. Sets members of `decision`, which is as constructed.
     virtual void decide(const HeightEdge& edge, const Entries& entries, const Registers& registers,
                         HeightDecision& decision) const = 0;
 

@@ -88,7 +88,7 @@ class SummedHeightTest : public HeightTestFunctions {
         decision.values[1] = size.height;
         decision.values[5] = summed_height_difference(sums[0], sums[1], sums[2]);
         decision.values[6] = limit(weight(decision), r.tests);
-        decision.asks = decision.values[5] > decision.values[6];
+        decision.asks = summed_height_test(sums[0], sums[1], sums[2], size, r.tests);
     }
 
   private:

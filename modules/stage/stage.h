@@ -62,8 +62,7 @@ class Stage : public Unit {
     /// Processes an item with the entries read for it, and returns the result.
     virtual Out process(const In& item, const Entries& entries) = 0;
 
-    /// Signals in addition to the items' fields: for an item that has started, and for one that has been processed.
-    virtual void trace_started(Signals&, const In&) const {}
+    /// Signals in addition to the items' fields, for an item that has been processed.
     virtual void trace_processed(Signals&, const In&, const Out&) const {}
 
     void step() override;

@@ -47,7 +47,6 @@ void Stage<In, Out>::trace_signals(Signals& signals) const {
     signals.input(*input_);
     if (signals.when(signals.changed("started", activity_.items_in()) && !m.pipeline.empty())) {
         signals.item("in", m.pipeline.newest().item);
-        trace_started(signals, m.pipeline.newest().item);
         if (!reads_tables())
             show_result(m.pipeline.newest());
     }

@@ -1,10 +1,10 @@
 #pragma once
 #include <algorithm>
-#include <cstdint>
 
 #include "modules/datapath/parameters.h"
 #include "modules/timing/cycle_scheduler.h"
 #include "modules/timing/design_options.h"
+#include "modules/timing/height_test_kind.h"
 #include "modules/timing/timing.h"
 
 namespace tessera {

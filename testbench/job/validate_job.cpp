@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "modules/datapath/format.h"
 #include "modules/timing/design_keys.h"
 #include "modules/timing/design_rules.h"
 #include "testbench/job/job_choices.h"
@@ -62,7 +63,9 @@ void check_mesh(const Job::Mesh& mesh, Faults& faults) {
                   "`mesh.spacing` = {}: a lattice needs a power of two, so that midpoints are at texel centres: set "
                   "mesh.spacing = {}",
                   mesh.spacing,
-                  std::int64_t{1} << (datapath::bits_for(static_cast<std::uint64_t>(mesh.spacing) + 1) - 1));
+                  std::int64_t{1} << (datapath::bits_for(
+                                          static_cast<std::uint64_t>(std::max<std::int64_t>(mesh.spacing, 0)) + 1) -
+                                      1));
     const bool round = mesh.source == MeshSource::cylinder || mesh.source == MeshSource::sphere;
     faults.unless(!round || mesh.columns == 0 || mesh.columns >= 3,
                   "`mesh.columns` = {}, but a {} needs 3 or more to close: set mesh.columns = 3 or more", mesh.columns,

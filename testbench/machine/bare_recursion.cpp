@@ -45,6 +45,8 @@ BareRecursion::BareRecursion(const MachineSetup& setup)
                 formats.normal.bits));
     const TableLayout& table = setup.registers.height_table;
     height_table_.resize(table.bytes() + sizeof(std::uint64_t));
+    for (unsigned k = 0; k < table.entry_bytes; ++k)
+        height_entry_mask_ = height_entry_mask_ << 8 | 0xff;
     write_height_table(setup, [&](std::uint64_t address, const unsigned char* bytes, std::size_t count) {
         std::copy_n(bytes, count, height_table_.begin() + static_cast<std::ptrdiff_t>(address - table.base));
     });
@@ -57,14 +59,13 @@ HeightDecision BareRecursion::test_heights(const HeightEdge& edge) const {
     height_test_.reads(edge, r, reads);
     Entries entries;  // NOLINT(cppcoreguidelines-pro-type-member-init): as many as are read
     const bool codes = reads.last_port() == 1;
-    const std::uint64_t mask = ~std::uint64_t{0} >> (64 - 8 * r.height_table.entry_bytes);
     for (unsigned k = 0; k < reads.entries(); ++k) {
         const std::uint64_t address = reads.addresses()[k];
         if (codes) {
             entries[k] = setup_.heights()[(address - r.displacement_map.base) / r.displacement_map.entry_bytes];
         } else {
             std::memcpy(&entries[k], &height_table_[address - r.height_table.base], sizeof entries[k]);
-            entries[k] &= mask;
+            entries[k] &= height_entry_mask_;
         }
     }
     HeightDecision decision;

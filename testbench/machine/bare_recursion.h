@@ -16,7 +16,7 @@ namespace tessera {
 /// the speed of a simulation of the machine; its mesh is the pipeline's, bit for bit (checked in every run).
 class BareRecursion {
   public:
-    /// `setup` must outlive it.
+    /// `setup` must outlive it. Later changes of its thresholds count, those of its tables do not.
     explicit BareRecursion(const MachineSetup& setup);
 
     /// Counts so far. The machine normalises N_ij in two units and counts each; Lighting is not part of this.
@@ -59,7 +59,8 @@ class BareRecursion {
     const MachineSetup& setup_;
     std::vector<std::uint64_t> normals_;  // packed as in the normal map
     const datapath::HeightTestFunctions& height_test_;
-    std::vector<unsigned char> height_table_;  // as in the memory, and 8 bytes more
+    std::vector<unsigned char> height_table_;  // as in the memory; 8 bytes more, since an entry is read as 8 bytes
+    std::uint64_t height_entry_mask_ = 0;
     datapath::Saturations saturations_;
 };
 

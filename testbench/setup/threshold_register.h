@@ -9,7 +9,7 @@
 namespace tessera {
 
 /// A threshold to be converted to a register.
-struct Threshold {
+struct ThresholdToRegister {
     const char* key;
     double value;
     bool used;     // by an enabled test
@@ -20,7 +20,7 @@ struct Threshold {
 
 /// Rounds down. Refuses a value that does not fit, and one that would become 0 although it is not: a test against 0 has
 /// a different meaning, and its result depends on rounding.
-inline std::uint64_t to_register(const Threshold& threshold) {
+inline std::uint64_t to_register(const ThresholdToRegister& threshold) {
     const double fixed = std::floor(threshold.value * threshold.scale);
     if (fixed > threshold.limit)
         throw InputError(fmt::format("{} = {} does not fit its register; the largest is {}", threshold.key,

@@ -33,9 +33,9 @@ void HeightTestUnit::reads(const HeightOperands& edge, Reads& reads) const {
 }
 
 HeightResult HeightTestUnit::process(const HeightOperands& edge, const Entries& entries) {
-    if (!registers_.tests.summed_height_test)
-        decision_ = {};
-    else
+    const bool on = registers_.tests.summed_height_test;
+    decision_ = {};
+    if (on)
         functions_.decide(edge, entries, registers_, decision_);
     return {edge.tag, decision_.asks, decision_.rank};
 }

@@ -9,13 +9,13 @@
 
 namespace tessera {
 
-/// The unit of the Summed Height Test (paper figure 8), or of the test that a design has in its place. Arithmetic, table,
-/// and the latency's reasons: the test's file, in modules/datapath.
+/// The unit of the Summed Height Test (paper figure 8), or of the test that a design has in its place. Its arithmetic,
+/// table and latency: the test's file in modules/datapath.
 ///
-/// In:   HeightOperands. Out: HeightResult.
+/// In:   HeightOperands. Out: HeightResult; of a Rank Test with the rank, by which the `greatest_rank` cut chooses.
 /// Memory: the test's table; for some edges the displacement map (HeightTestFunctions::reads_codes).
-/// Timing: the test's latency, after the last table entry; interval 1 by default, or that of the table reads if longer.
-/// Waits for Calculate New U and the table; held back by the collector of the tests.
+/// Timing: the test's latency, after the last entry; interval 1 by default, or that of the reads if longer.
+/// Waits for Calculate New U and the table, or the displacement map; held back by the collector of the tests.
 class HeightTestUnit : public Stage<HeightOperands, HeightResult> {
   public:
     StreamInput<HeightOperands> input{"input"};

@@ -54,6 +54,7 @@ golden::Filter golden_filter(datapath::MapFilter filter);
 
 /// Copies what golden takes as given: fitted heights, the Rank or the Curvature Table, the mipmap's filter.
 void set_tables(golden::Map& map, const PreparedScene& prepared);
+/// Gives the map a Mipmap Test.
 void set_mipmap(golden::Map& map, MipmapFilter filter);
 
 /// The registers as the golden model's parameters. Exact except for the transform's fourth column and the near plane,

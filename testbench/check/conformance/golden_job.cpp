@@ -164,7 +164,7 @@ GoldenJob::GoldenJob(const Job& job, const BaseMesh& mesh, const HeightMap& heig
       parameters_(golden::make_parameters(scene_)),
       map_(make_map(job_, height_map, heights(), code_range_, frames_.size, scene_, parameters_.scale)) {
     set_tables(map_, tables);
-    if (job_.hardware.height_test == HeightTest::mipmap)
+    if (job_.hardware.height_test == HeightTest::mipmap)  // the filter as the job has it, not as the host
         set_mipmap(map_, job_.tests.mipmap_filter);
     if (scene_.rank_view == golden::RankView::none)
         parameters_.bound_threshold =

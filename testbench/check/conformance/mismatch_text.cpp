@@ -82,7 +82,7 @@ std::string edge_text(const datapath::Registers& registers, const datapath::Tria
     result += fmt::format(
         "  golden's lengths before normalising: N_ij {:.9g}, T_ij {:.9g}, N'_ij {:.9g}; largest normal "
         "difference "
-        "{:.6f} LSB; rectangles {} x {}, |2 S_ij - S_i - S_j| {} against {}; view length {:.6f} LSB\n",
+        "{:.6f} LSB; rectangles {} x {}; height test: {} against {}; view length {:.6f} LSB\n",
         golden.inserted.mean_normal_length, golden.inserted.mean_tangent_length, golden.inserted.bump_length,
         std::ldexp(golden.normal_difference, formats.normal.fraction), golden.rectangle_width, golden.rectangle_height,
         golden.height, golden.height_limit, std::ldexp(golden.view_length, formats.screen.fraction));

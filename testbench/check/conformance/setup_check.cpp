@@ -250,7 +250,7 @@ class RegisterCheck {
                      golden.summed_height_threshold * (golden.area ? 1 : 4), rounded_down);
         check_rank_thresholds();
         // Without the test its register does not exist and reads as 0.
-        const bool curvature = (golden::curvature_table(golden_.map()).columns > 0);
+        const bool curvature = golden::has<golden::CurvatureTest>(golden_.map());
         judge_.judge("tests.curvature_threshold", number(tests.curvature_threshold),
                      curvature ? golden.curvature_threshold * 8 : 0, rounded_down);
         judge_.judge("tests.mipmap_threshold", tests.mipmap_threshold,

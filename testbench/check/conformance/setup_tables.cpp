@@ -58,11 +58,11 @@ class TableCheck {
     void run() {
         check_displacement_map();
         check_normal_map();
-        if ((golden::rank_table(golden_.map()).columns > 0))
+        if (golden::has<golden::RankTest>(golden_.map()))
             check_rank_table();
-        else if ((golden::curvature_table(golden_.map()).columns > 0))
+        else if (golden::has<golden::CurvatureTest>(golden_.map()))
             check_curvature_table();
-        else if (!golden::mipmap_levels(golden_.map()).empty())
+        else if (golden::has<golden::MipmapTest>(golden_.map()))
             check_mipmap_table();
         else
             check_summed_height_table();
@@ -247,7 +247,7 @@ class TableCheck {
 
 golden::DerivedRanks derived_ranks(const MachineSetup& setup, const GoldenJob& golden, SetupResult& result) {
     const golden::Map& map = golden.map();
-    if (!(golden::rank_table(map).columns > 0) && !(golden::curvature_table(map).columns > 0))
+    if (!golden::has<golden::RankTest>(map) && !golden::has<golden::CurvatureTest>(map))
         return {};
     golden::RankSource source;
     const datapath::Formats& formats = setup.registers.formats;
@@ -267,9 +267,9 @@ golden::DerivedRanks derived_ranks(const MachineSetup& setup, const GoldenJob& g
     Judge judge(result, "table's extent", "texels that the base mesh covers; the order of bisections");
     const golden::RankTable& table = golden::rank_table(map);
     judge.judge("columns",
-                number((golden::rank_table(map).columns > 0) ? table.columns : golden::curvature_table(map).columns),
+                number(golden::has<golden::RankTest>(map) ? table.columns : golden::curvature_table(map).columns),
                 covered.x, exact);
-    judge.judge("rows", number((golden::rank_table(map).columns > 0) ? table.rows : golden::curvature_table(map).rows),
+    judge.judge("rows", number(golden::has<golden::RankTest>(map) ? table.rows : golden::curvature_table(map).rows),
                 covered.y, exact);
     source.columns = table.columns;
     source.rows = table.rows;
@@ -278,7 +278,7 @@ golden::DerivedRanks derived_ranks(const MachineSetup& setup, const GoldenJob& g
     for (const glm::dvec2& midpoint : source.midpoints)
         sorted.push_back(source.entry(midpoint));
     std::sort(sorted.begin(), sorted.end());
-    if (!(golden::rank_table(map).columns > 0) || std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end())
+    if (!golden::has<golden::RankTest>(map) || std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end())
         return {};
     source.rank_bits = golden.scene().rank_bits;
     source.bound_bits = golden.scene().bound_bits;

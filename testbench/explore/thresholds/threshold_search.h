@@ -90,7 +90,7 @@ class ThresholdSearch {
         std::optional<Outcome> least_error;  ///< with a bound on the error: the least found
     };
 
-    /// All must outlive it. `on_progress` is called after every shape, with an estimate of the work done, 0..1.
+    /// All must outlive it. `job`: with a height test that one threshold decides. `on_progress` is called after every shape, with an estimate of the work done, 0..1.
     ThresholdSearch(RefinementForest& forest, const MachineSetup& setup, const Job& job, const TuneGoal& goal,
                     const TuneSpace& space, std::function<void(double)> on_progress);
 

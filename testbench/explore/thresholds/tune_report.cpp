@@ -116,20 +116,21 @@ std::string tune_json(const TuneRequest& request, const TuneResult& result, cons
     json["goal"]["metric"] = goal.largest ? "max" : "rms";
     json["triangles"] = figures.triangles;
     json["error"] = {{"what", figures.what}, {"unit", figures.unit}, {"rms", figures.rms}, {"max", figures.max}};
-    json["tests"] = {{"normal", tests.normal},
-                     {"normal_threshold", tests.normal_threshold},
-                     {"summed_height", tests.summed_height},
-                     {"summed_height_threshold", tests.summed_height_threshold},
-                     {"summed_height_unit", name_of(tests.summed_height_unit)},
-                     {"curvature_threshold", tests.curvature_threshold},
-                     {"mipmap_threshold", tests.mipmap_threshold},
-                     {"rank_threshold", tests.rank_threshold},
-                     {"bound_threshold", tests.bound_threshold},
-                     {"view", tests.view},
-                     {"view_threshold", tests.view_threshold},
-                     {"tex_coord", tests.tex_coord},
-                     {"generation", tests.generation},
-                     {"generation_limit", tests.generation_limit}};
+    nlohmann::ordered_json& found = json["tests"];
+    found = {{"normal", tests.normal},
+             {"normal_threshold", tests.normal_threshold},
+             {"summed_height", tests.summed_height},
+             {"summed_height_threshold", tests.summed_height_threshold},
+             {"summed_height_unit", name_of(tests.summed_height_unit)}};
+    for (const HeightTest test : other_height_tests())
+        found[fmt::format("{}_threshold", name_of(test))] = tests.*host_of(test).threshold();
+    found.update({{"rank_threshold", tests.rank_threshold},
+                  {"bound_threshold", tests.bound_threshold},
+                  {"view", tests.view},
+                  {"view_threshold", tests.view_threshold},
+                  {"tex_coord", tests.tex_coord},
+                  {"generation", tests.generation},
+                  {"generation_limit", tests.generation_limit}});
     json["height_test"] = name_of(result.job.hardware.height_test);
     json["triangulation"] = name_of(result.point.triangulation);
     json["base"] = {{"name", base.name()}};

@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <vector>
 
 #include "modules/datapath/curvature.h"
 #include "testbench/setup/height_tests/height_test_host.h"

@@ -1,4 +1,6 @@
 #include <cmath>
+#include <cstdint>
+#include <vector>
 
 #include "modules/datapath/mipmap.h"
 #include "testbench/setup/height_tests/height_test_host.h"

@@ -88,10 +88,9 @@ pgm() { awk -v W=$1 -v H=$2 -v M=${3:-255} 'BEGIN { print "P2", W, H, M; for (k 
 )";
 
 ProgramEnd shell(const std::string& script, const fs::path& folder, const std::vector<std::string>& arguments = {}) {
-    const std::string known = "tessera() { '" + tessera_program() + "' \"$@\"; }\nscripts='" +
-                              (source_folder() / "scripts").string() + "'\n";
-    return run_program(Arguments{"bash", "-euo", "pipefail", "-c", known + prelude + script, "shell"} +
-                           arguments,
+    const std::string known =
+        "tessera() { '" + tessera_program() + "' \"$@\"; }\nscripts='" + (source_folder() / "scripts").string() + "'\n";
+    return run_program(Arguments{"bash", "-euo", "pipefail", "-c", known + prelude + script, "shell"} + arguments,
                        folder);
 }
 
@@ -189,7 +188,7 @@ void collect_script(const fs::path& file, std::vector<Literal>& literals) {
                             std::regex_replace((*found)[1].str(), std::regex(R"(\$\w+)"), "{}")});
 }
 
-/// Whether a test's source has the words.
+/// Whether a test's source has the words; that it also follows them is up to its author.
 bool says(const fs::path& test, const std::string& words) {
     std::vector<Literal> literals;
     collect(test, literals);

@@ -115,10 +115,9 @@ TEST_CASE("formats: a format too wide for an intermediate of the datapath is ref
     job.formats = {};
     CHECK_NOTHROW(make_setup(job, mesh, map));
     job.tests.generation_limit = 16;  // likewise
-    CHECK_THROWS_WITH(make_setup(job, mesh, map), Catch::Contains("tests.generation_limit has 4 bits") &&
-                                                      Catch::Contains("cannot hold 16") &&
-                                                      Catch::Contains(
-                                                          "lower tests.generation_limit or raise formats.generation_bits"));
+    CHECK_THROWS_WITH(make_setup(job, mesh, map),
+                      Catch::Contains("tests.generation_limit has 4 bits") && Catch::Contains("cannot hold 16") &&
+                          Catch::Contains("lower tests.generation_limit or raise formats.generation_bits"));
     job.tests.generation_limit = 15;
     CHECK_NOTHROW(make_setup(job, mesh, map));
     job.formats.generation_bits = 3;

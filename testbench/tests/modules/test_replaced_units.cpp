@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "modules/datapath/edge_tests.h"
 #include "modules/sockets/packed_item.h"
 #include "modules/stage/stage_steps.h"
 #include "testbench/tests/modules/named_machine.h"
@@ -32,7 +31,8 @@ class HalvedHeightTest : public datapath::SummedHeightTest {
     void decide(const datapath::HeightEdge& edge, const Entries& entries, const datapath::Registers& registers,
                 datapath::HeightDecision& decision) const override {
         SummedHeightTest::decide(edge, entries, registers, decision);
-        decision.asks = decision.values[5] / 2 > decision.values[6];
+        const std::uint64_t difference = decision.values[static_cast<std::size_t>(compared)];
+        decision.asks = difference / 2 > limit(weight(decision), registers.tests);
     }
 };
 

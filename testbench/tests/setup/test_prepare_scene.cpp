@@ -230,7 +230,8 @@ TEST_CASE("an invalid scene is refused with the value and a remedy, which works"
          [](Scene& s) {
              s.triangles = {{0, 1, 2}};
          }},
-        {"a map of 0 x 4 texels: each side must be 1 to 4096 (formats.texture_integer)", [](Scene& s) { s.map_width = 0; },
+        {"a map of 0 x 4 texels: each side must be 1 to 4096 (formats.texture_integer)",
+         [](Scene& s) { s.map_width = 0; },
          [](Scene& s) {
              s.map_width = 1;
              s.map.resize(4);

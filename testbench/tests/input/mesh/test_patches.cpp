@@ -218,7 +218,8 @@ TEST_CASE("patches: patches that give no mesh are refused") {
     const BezierPatches line = one_patch([](int i, int j) { return glm::dvec3(i + j); });
     CHECK_THROWS_AS(make_patch_mesh(line, 4, 4, "p.txt"), InputError);
     CHECK_THROWS_WITH(make_patch_mesh(teapot(), 4097, 4, "p.txt"), Contains("mesh.columns = 4097"));
-    CHECK_THROWS_WITH(make_patch_mesh(teapot(), 4, 0, "p.txt"), Contains("mesh.rows = 0: must be 1 to 4096 for a patch mesh"));
+    CHECK_THROWS_WITH(make_patch_mesh(teapot(), 4, 0, "p.txt"),
+                      Contains("mesh.rows = 0: must be 1 to 4096 for a patch mesh"));
     CHECK_NOTHROW(make_patch_mesh(teapot(), 4, 1, "p.txt"));
     CHECK_THROWS_AS(make_patch_mesh(teapot(), 2048, 2048, "p.txt"), ResourceError);
     Job::Mesh job;

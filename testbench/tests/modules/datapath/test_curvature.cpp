@@ -1,6 +1,5 @@
 #include "modules/datapath/curvature.h"
 
-#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 

@@ -1,6 +1,5 @@
 #include "modules/datapath/mipmap.h"
 
-#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdint>

@@ -277,10 +277,10 @@ const CaseTable<BenchMode> overwritten{
         BridgedUnits first_units(setup.design.timing, joined(memory));
         BridgedUnits second_units(setup.design.timing, joined(memory));
         NamedMachine first("first", setup, &first_units), second("second", other, &second_units);
-        CHECK_THAT(error_of([] { sc_core::sc_start(); }), Contains("first.pipeline.") &&
-                                                             Contains("no longer holds the table that was written to "
-                                                                      "it: give each machine and table a memory, or "
-                                                                      "addresses, of its own"));
+        CHECK_THAT(error_of([] { sc_core::sc_start(); }),
+                   Contains("first.pipeline.") && Contains("no longer holds the table that was written to "
+                                                           "it: give each machine and table a memory, or "
+                                                           "addresses, of its own"));
     }};
 
 const CaseTable<BenchMode> apart{

@@ -298,13 +298,13 @@ TEST_CASE("two machines that spill to the same addresses of a memory each draw t
     std::reverse(other.base_triangles.begin(), other.base_triangles.end());
     SharedMemory memory("memory"), other_memory("other_memory");
     const auto joined = [](SharedMemory& spilled) {
-        return BridgedMemory([&](BaseProtocolBridge& bridge,
-                                 const std::string& name) -> std::unique_ptr<sc_core::sc_module> {
-            if (name != "off_chip_memory")
-                return blocking_5_ns(bridge, name);
-            bridge.to_memory.bind(spilled.socket);
-            return nullptr;
-        });
+        return BridgedMemory(
+            [&](BaseProtocolBridge& bridge, const std::string& name) -> std::unique_ptr<sc_core::sc_module> {
+                if (name != "off_chip_memory")
+                    return blocking_5_ns(bridge, name);
+                bridge.to_memory.bind(spilled.socket);
+                return nullptr;
+            });
     };
     BridgedUnits first_units(setup.design.timing, joined(memory)),
         second_units(setup.design.timing, joined(other_memory));

@@ -1,0 +1,133 @@
+// The four height tests as the unit and the models call them: what an edge reads, and how it is decided.
+#include <catch2/catch.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "modules/datapath/height_tests.h"
+#include "modules/datapath/midpoint.h"
+#include "modules/datapath/table_shapes.h"
+#include "testbench/common/random.h"
+
+using namespace tessera;
+using namespace tessera::datapath;
+
+namespace {
+
+/// A map of 48 x 32 texels that repeats along u.
+Registers registers_of(HeightTest test, bool codes = false) {
+    Registers r;
+    r.formats.height_test = test;
+    r.formats.codes = codes;
+    r.map = {48, 32, AddressMode::repeat, AddressMode::clamp};
+    r.covered = {48, 32};
+    r.displacement_map.base = 0x10000;
+    r.height_table.base = 0x20000;
+    shape_tables(r);
+    return r;
+}
+
+HeightEdge edge_of(const TexCoord& i, const TexCoord& j, bool codes_known = false) {
+    return {i, j, midpoint(i, j), codes_known, 0, 0, {}};
+}
+
+/// In whole texels from the middle of texel (column, row), along u.
+HeightEdge edge_along_u(std::uint32_t column, std::uint32_t row, std::uint32_t texels, bool codes_known = false) {
+    const TexCoord i{(column << 12) + 2048, (row << 12) + 2048};
+    return edge_of(i, {i.u + (texels << 12), i.v}, codes_known);
+}
+
+Reads reads_of(const HeightEdge& edge, const Registers& r) {
+    Reads reads;
+    functions_of(r.formats.height_test).reads(edge, r, reads);
+    return reads;
+}
+
+std::vector<std::uint64_t> addresses_of(const Reads& reads) {
+    return {reads.addresses(), reads.addresses() + reads.entries()};
+}
+
+}  // namespace
+
+TEST_CASE("height tests: a Summed Height Test reads three rectangles, or for a short edge the midpoint's code") {
+    const Registers table = registers_of(HeightTest::summed_height),
+                    codes = registers_of(HeightTest::summed_height, true);
+    const HeightEdge edge = edge_along_u(10, 10, 8);  // rectangles of 4 x 1 texels
+    const Reads three = reads_of(edge, table);
+    REQUIRE(three.requests() == 3);
+    CHECK(three.last_port() == 0);
+    const auto corner = [&](std::uint64_t x, std::uint64_t y) { return 0x20000 + (y * 49 + x) * 4; };
+    CHECK(std::vector<std::uint64_t>(three.addresses(), three.addresses() + 4) ==
+          std::vector<std::uint64_t>{corner(12, 11), corner(8, 11), corner(12, 10), corner(8, 10)});
+    CHECK(three.count(1) == 4);
+    CHECK(reads_of(edge_along_u(47, 10, 8), table).count(0) == 6);  // wraps
+
+    const HeightEdge short_edge = edge_along_u(10, 10, 2, true);
+    const Reads code = reads_of(short_edge, codes);
+    CHECK(code.requests() == 1);
+    CHECK(code.port(0) == 1);
+    CHECK(addresses_of(code) == std::vector<std::uint64_t>{0x10000 + (10 * 48 + 11) * 2});
+    CHECK(reads_of(edge_along_u(10, 10, 2, false), codes).last_port() == 0);  // the ends are not displaced yet
+    CHECK(reads_of(edge_along_u(10, 10, 8, true), codes).last_port() == 0);   // longer
+    CHECK(reads_of(short_edge, table).last_port() == 0);                      // a design without codes
+}
+
+TEST_CASE("height tests: a Rank Test reads the midpoint's entry, and nothing if it is no lattice point") {
+    const Registers r = registers_of(HeightTest::rank);
+    CHECK(addresses_of(reads_of(edge_along_u(10, 10, 8), r)) == std::vector<std::uint64_t>{0x20000 + 10 * 48 + 14});
+    const Reads none = reads_of(edge_along_u(10, 10, 3), r);
+    CHECK(none.requests() == 0);
+    CHECK(none.last_port() == 0);
+}
+
+TEST_CASE("height tests: a Curvature Test reads one cell, or for a short edge three codes") {
+    const Registers r = registers_of(HeightTest::curvature);
+    const Reads cell = reads_of(edge_along_u(10, 10, 8), r);
+    CHECK(cell.requests() == 1);
+    CHECK(cell.entries() == 1);
+    CHECK(cell.port(0) == 0);
+    const Reads codes = reads_of(edge_along_u(10, 10, 2), r);
+    CHECK(codes.requests() == 1);
+    CHECK(codes.port(0) == 1);
+    const auto code = [](std::uint64_t x) { return 0x10000 + (10 * 48 + x) * 2; };
+    CHECK(addresses_of(codes) == std::vector<std::uint64_t>{code(10), code(12), code(11)});
+}
+
+TEST_CASE("height tests: a Mipmap Test reads the blocks of both ends and of the midpoint, a request each") {
+    const Registers r = registers_of(HeightTest::mipmap);
+    const Reads three = reads_of(edge_along_u(10, 10, 2), r);
+    CHECK(three.requests() == 3);
+    const auto block = [](std::uint64_t x) { return 0x20000 + (10 * 48 + x) * 2; };
+    CHECK(addresses_of(three) == std::vector<std::uint64_t>{block(10), block(12), block(11)});
+}
+
+TEST_CASE("height tests: an edge asks for a split if the compared value exceeds the limit") {
+    Random random(3);
+    for (std::size_t kind = 0; kind < height_tests.size(); ++kind) {
+        const HeightTestFunctions& test = *height_tests[kind];
+        Registers r = registers_of(static_cast<HeightTest>(kind));
+        CHECK(&functions_of(r.formats.height_test) == &test);
+        if (test.compared < 0) {
+            CHECK(test.limit(7, r.tests) == 0);
+            continue;
+        }
+        int asked = 0;
+        for (int k = 0; k < 2000; ++k) {
+            r.tests.summed_height_unit = random.coin() ? SummedHeightUnit::sum : SummedHeightUnit::area;
+            r.tests.summed_height_threshold = r.tests.curvature_threshold = random.natural(0, 100000);
+            r.tests.mipmap_threshold = random.natural(0, 60000);
+            const TexCoord i{random.natural(0, 40 << 12), random.natural(0, 30 << 12)};
+            const HeightEdge edge = edge_of(i, {i.u + random.natural(0, 16 << 12), i.v + random.natural(0, 2 << 12)});
+            Entries entries{};
+            for (std::uint64_t& entry : entries)
+                entry = random.natural(0, 65535);
+            HeightDecision decision;
+            test.decide(edge, entries, r, decision);
+            const std::uint64_t value = decision.values[static_cast<std::size_t>(test.compared)];
+            CHECK(decision.asks == (value > test.limit(test.weight(decision), r.tests)));
+            asked += decision.asks ? 1 : 0;
+        }
+        CHECK(asked > 50);
+        CHECK(asked < 1950);
+    }
+}
