@@ -4,6 +4,7 @@
 
 #include "testbench/commands/progress.h"
 #include "testbench/commands/run_files.h"
+#include "testbench/commands/summary.h"
 #include "testbench/common/atomic_file.h"
 #include "testbench/common/atomic_set.h"
 #include "testbench/explore/thresholds/rank_curve.h"
@@ -52,8 +53,7 @@ ExitCode rank_command(const RankOrder& order, const fs::path& data_folder) {
     fmt::print("tessera rank: {} x {} entries of {} bits in {} bytes each, {} base triangles\n{}", layout.columns,
                layout.rows, setup.registers.formats.rank_bits + setup.registers.formats.bound_bits, layout.entry_bytes,
                setup.base_triangles.size(), rank_curve_text(curve, unit));
-    for (const std::string& remark : setup.remarks)
-        fmt::print("  remark: {}\n", remark);
+    fmt::print("{}", notes_text(repairs_of(inputs.mesh, inputs.map), setup.remarks));
     fmt::print("  written: {}, {}, {}\n", bytes.string(), json.string(), csv.string());
     return ExitCode::fine;
 }

@@ -1,16 +1,21 @@
 #include "testbench/commands/run_frames.h"
 
+#include <fcntl.h>
 #include <fmt/core.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <optional>
+#include <set>
+#include <sstream>
+#include <string_view>
 #include <system_error>
 #include <vector>
 
@@ -73,20 +78,65 @@ std::vector<Frame> plan_frames(const Job& asked, ResolvedJob& resolved_job) {
     return frames;
 }
 
-/// Forks a process for a frame, which gets SIGTERM when this one ends. Returns 0 in the child.
-pid_t fork_frame(const Frame& frame) {
+/// The process of a frame, and what it writes about itself.
+struct FrameProcess {
+    pid_t process;  // 0 in the child
+    int messages;   // the end of a pipe: the child's to write, the parent's to read
+};
+
+/// Forks a process for a frame, which gets SIGTERM when this one ends.
+FrameProcess fork_frame(const Frame& frame) {
+    const auto fail = [&](const char* what) {
+        throw std::system_error(errno, std::generic_category(), fmt::format("{}: {}", frame.text(), what));
+    };
     std::fflush(nullptr);  // buffered output would be printed twice
+    std::array<int, 2> ends{};
+    if (::pipe2(ends.data(), O_CLOEXEC) != 0)
+        fail("cannot make a pipe");
     const pid_t parent = ::getpid();
     const pid_t child = ::fork();
     if (child < 0)
-        throw std::system_error(errno, std::generic_category(),
-                                fmt::format("{}: cannot start a process", frame.text()));
+        fail("cannot start a process");
+    ::close(ends[child == 0 ? 0 : 1]);
     if (child == 0) {
         ::prctl(PR_SET_PDEATHSIG, SIGTERM);
         if (::getppid() != parent)  // the parent ended before prctl()
             ::kill(::getpid(), SIGTERM);
     }
-    return child;
+    return {child, ends[child == 0 ? 1 : 0]};
+}
+
+void send(int pipe, std::string_view text) {
+    while (!text.empty()) {
+        const ssize_t sent = ::write(pipe, text.data(), text.size());
+        if (sent < 0 && errno != EINTR)
+            return;  // the parent has ended
+        text.remove_prefix(sent < 0 ? 0 : static_cast<std::size_t>(sent));
+    }
+    ::close(pipe);
+}
+
+/// All that is sent until the other end is closed.
+std::string receive(int pipe) {
+    std::string text;
+    std::array<char, 4096> part{};
+    for (ssize_t size = 1; size != 0;) {
+        size = ::read(pipe, part.data(), part.size());
+        if (size < 0 && errno != EINTR)
+            break;
+        text.append(part.data(), size < 0 ? 0 : static_cast<std::size_t>(size));
+    }
+    ::close(pipe);
+    return text;
+}
+
+/// The lines of a frame's messages that no frame before had.
+std::string new_lines(const std::string& messages, std::set<std::string>& said) {
+    std::string text, line;
+    for (std::istringstream lines(messages); std::getline(lines, line);)
+        if (said.insert(line).second)
+            text += line + '\n';
+    return text;
 }
 
 /// Exit status of a frame's process: its exit code or, as in shells, 128 plus the signal number.
@@ -114,13 +164,19 @@ ExitCode run_frames(const Job& asked, const RunFrame& run) {
     fmt::print("{}{}", found_text(resolved.found), text);
     ExitCode worst = ExitCode::fine;
     std::vector<FrameRow> rows;
+    std::set<std::string> said;
     for (Frame& frame : frames) {
         Interruption::note(
             fmt::format("at {} of {} frames, complete in {}", rows.size(), frames.size(), folder.string()));
-        const pid_t child = fork_frame(frame);
-        if (child == 0)
-            return run(frame.job, frame.row.name + ": ", rows.empty() ? folder : fs::path(frame.job.output.folder));
-        const int code = wait_for(child, frame);
+        const FrameProcess child = fork_frame(frame);
+        if (child.process == 0) {
+            const FrameEnd end =
+                run(frame.job, frame.row.name + ": ", rows.empty() ? folder : fs::path(frame.job.output.folder));
+            send(child.messages, end.messages);
+            return end.code;
+        }
+        const std::string messages = new_lines(receive(child.messages), said);
+        const int code = wait_for(child.process, frame);
         if (code == static_cast<int>(ExitCode::check_failed) &&
             fs::exists(fs::path(frame.job.output.folder) / "statistics.json")) {
             print_failure(frame, fmt::format("checks failed, see {}/conformance.txt", frame.job.output.folder));
@@ -133,7 +189,7 @@ ExitCode run_frames(const Job& asked, const RunFrame& run) {
         }
         read_counts(frame.job.output.folder, frame.row);
         rows.push_back(frame.row);
-        const std::string line = frames_line(frame.row);
+        const std::string line = frames_line(frame.row) + messages;
         text += line;
         fmt::print("{}", line);
         std::fflush(stdout);

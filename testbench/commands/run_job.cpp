@@ -75,11 +75,7 @@ Loaded load(const Job& asked) {
     Loaded loaded{load_inputs(asked), {}};
     const Inputs& inputs = loaded.inputs;
     loaded.setup = make_setup(inputs.resolved.job, inputs.mesh, inputs.map);
-    std::vector<std::string> remarks;
-    for (const std::string& repair : inputs.mesh.repairs)
-        remarks.push_back("mesh: " + repair);
-    for (const std::string& repair : inputs.map.repairs)
-        remarks.push_back("map: " + repair);
+    const std::vector<std::string> remarks = repairs_of(inputs.mesh, inputs.map);
     loaded.setup.remarks.insert(loaded.setup.remarks.begin(), remarks.begin(), remarks.end());
     for (std::string& remark : design_remarks(inputs.resolved.job, loaded.setup))
         loaded.setup.remarks.push_back(std::move(remark));
@@ -312,7 +308,8 @@ ExitCode run_job(const Command& command) {
     record_fingerprints(job);
     if (job.frames.count > 1)
         return run_frames(job, [&](const Job& frame, const std::string& name, const std::filesystem::path& replaced) {
-            return run_once(frame, command, name, replaced).code;
+            const Ending ending = run_once(frame, command, name, replaced);
+            return FrameEnd{ending.code, messages_of(ending.text)};
         });
     const Ending ending = run_once(job, command, {}, job.output.folder);
     fmt::print("{}", ending.text);

@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <sstream>
+#include <string_view>
 
 #include "modules/datapath/widths.h"
 #include "testbench/common/grouped_digits.h"
@@ -197,6 +199,25 @@ std::string found_text(const std::vector<FoundValue>& found) {
     return text;
 }
 
+std::string notes_text(const std::vector<std::string>& repairs, const std::vector<std::string>& remarks) {
+    std::string text;
+    for (const auto* const sentences : {&repairs, &remarks})
+        for (const std::string& sentence : *sentences)
+            text += fmt::format("  note: {}\n", sentence);
+    return text;
+}
+
+std::string messages_of(const std::string& summary) {
+    std::string messages, line;
+    for (std::istringstream lines(summary); std::getline(lines, line);) {
+        const std::string_view words = std::string_view(line).substr(std::min<std::size_t>(2, line.size()));
+        for (const std::string_view begin : {"warning: ", "note: ", "bound ", "creases ", "texture seams "})
+            if (words.substr(0, begin.size()) == begin)
+                messages += line + '\n';
+    }
+    return messages;
+}
+
 std::string summary(const MachineSetup& setup, const Simulation& simulation, const MeshCounts& mesh,
                     const Checks& checks, double seconds) {
     const Totals totals(simulation);
@@ -251,9 +272,7 @@ std::string summary(const MachineSetup& setup, const Simulation& simulation, con
         text += fmt::format("  warning: {}\n", warning);
     for (const std::string& note : saturation_notes(saturations))
         text += fmt::format("  note: {}\n", note);
-    for (const std::string& remark : setup.remarks)
-        text += fmt::format("  note: {}\n", remark);
-    return text;
+    return text + notes_text({}, setup.remarks);
 }
 
 }  // namespace tessera

@@ -11,6 +11,7 @@
 #include "testbench/commands/option_values.h"
 #include "testbench/commands/progress.h"
 #include "testbench/commands/run_files.h"
+#include "testbench/commands/summary.h"
 #include "testbench/common/atomic_file.h"
 #include "testbench/common/atomic_set.h"
 #include "testbench/explore/thresholds/rank_search.h"
@@ -318,7 +319,8 @@ ExitCode tune_command(const TuneOrder& order, const fs::path& data_folder) {
     write_file(json_file, tune_json(request, result, figures, unit));
     write_file(job_file, tune_comment(request, result, figures, unit) + dump_job(job, job_file.parent_path()));
     files.commit();
-    fmt::print("{}  {:<24}{}\n", tune_text(request, result, figures, unit), "written", names);
+    fmt::print("{}  {:<24}{}\n{}", tune_text(request, result, figures, unit), "written", names,
+               notes_text(repairs_of(base, map), setup.remarks));
     return ExitCode::fine;
 }
 

@@ -6,6 +6,7 @@
 
 #include "testbench/commands/progress.h"
 #include "testbench/commands/run_files.h"
+#include "testbench/commands/summary.h"
 #include "testbench/common/atomic_file.h"
 #include "testbench/common/atomic_set.h"
 #include "testbench/explore/widths/widths_report.h"
@@ -153,7 +154,8 @@ ExitCode widths_command(const WidthsOrder& order, const fs::path& data_folder) {
     write_file(output.csv, widths_csv(sweep));
     write_file(output.json, widths_json(request, sweep));
     files.commit();
-    fmt::print("{}\n  written in {} and {}\n", widths_text(request, sweep), output.csv.string(), output.json.string());
+    fmt::print("{}\n  written in {} and {}\n{}", widths_text(request, sweep), output.csv.string(), output.json.string(),
+               notes_text(repairs_of(mesh, map), make_setup(request.job, mesh, map).remarks));
     const std::string failure = first_failure(sweep);
     const std::string refusal = all_refused(sweep);
     if (failure.empty() && refusal.empty())

@@ -24,6 +24,7 @@ HostedMachine::HostedMachine(const MachineSetup& setup, std::size_t number, Mesh
     host.bind();
     pipeline.lighting.to_rasteriser.bind(rasteriser.from_lighting);
     pipeline.pass_or_tessellate.decided.bind(decisions);
+    pipeline.pass_or_tessellate.decided.bind(monitor);
     pipeline.pass_or_tessellate.finished.bind(*this);
 }
 

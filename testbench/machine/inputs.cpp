@@ -1,5 +1,6 @@
 #include "testbench/machine/inputs.h"
 
+#include "testbench/common/error.h"
 #include "testbench/input/map/built_in_maps.h"
 #include "testbench/input/map/map_range.h"
 #include "testbench/input/map/no_data.h"
@@ -44,10 +45,21 @@ HeightMap load_map(const Job& job) {
     HeightMap map = make_map(job);
     if (job.map.source == MapSource::file)
         suspect_no_data(map, job.map.no_data);
+    else if (!job.map.no_data.empty() && !replace_missing(map, job.map.no_data))
+        throw InputError("map.no_data: every texel of the built-in map has one of its values; set map.no_data = []");
     if (!map.no_data_hint.empty())
         map.repairs.push_back(map.no_data_hint + '.');
     span_values(map, job.map.range);
     return map;
+}
+
+std::vector<std::string> repairs_of(const BaseMesh& mesh, const HeightMap& map) {
+    std::vector<std::string> repairs;
+    for (const std::string& repair : mesh.repairs)
+        repairs.push_back("mesh: " + repair);
+    for (const std::string& repair : map.repairs)
+        repairs.push_back("map: " + repair);
+    return repairs;
 }
 
 Inputs load_inputs(const Job& job) {

@@ -1,4 +1,7 @@
 #pragma once
+#include <string>
+#include <vector>
+
 #include "testbench/job/job.h"
 #include "testbench/machine/resolve_job.h"
 #include "testbench/setup/height_map.h"
@@ -18,5 +21,8 @@ struct Inputs {
     ResolvedJob resolved;
 };
 Inputs load_inputs(const Job& job);
+
+/// What was done to a mesh and a map, a sentence each.
+std::vector<std::string> repairs_of(const BaseMesh& mesh, const HeightMap& map);
 
 }  // namespace tessera

@@ -85,7 +85,7 @@ std::string Simulation::run() {
             "limits.triangles = {}: the mesh has more triangles than that; raise the thresholds "
             "under [tests], "
             "{}, or raise the limit",
-            monitor.mesh.triangles.size(),
+            monitor.limit(),
             setup.registers.tests.generation_test ? "lower tests.generation_limit" : "set tests.generation = true"));
     for (const auto& machine : machines)
         check_limits(machine->pipeline);

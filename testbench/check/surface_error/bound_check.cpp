@@ -93,6 +93,9 @@ std::string BoundResult::text() const {
                     threshold > 0 ? fmt::format("{:.1f} % of ", 100 * deviation / threshold) : "", threshold);
     const std::string worst = fmt::format("{}, worst at texel ({}, {})", found, worst_texel.x, worst_texel.y);
     switch (verdict) {
+        case Verdict::nothing:
+            return in_picture ? "no texel centre of the mesh is in the picture: set camera.target = \"auto\""
+                              : "no texel centre is on the mesh";
         case Verdict::holds: return (promised ? "holds: " : "kept here, but not guaranteed (see the note): ") + found;
         case Verdict::not_promised: return "exceeded, and not guaranteed (see the note): " + worst;
         case Verdict::positions: return fmt::format("exceeded by the rounding of positions: {}; set {}", worst, remedy);
@@ -127,6 +130,10 @@ std::optional<BoundResult> check_bound(const Job& job, const BaseMesh& base, con
     result.deviation = meter.deviation(error);
     result.points = result.in_picture ? error.seen : error.covered;
     result.worst_texel = error.worst_texel;
+    if (result.points == 0) {
+        result.verdict = Verdict::nothing;
+        return result;
+    }
     const double allowed = result.threshold * above_rounding;
     if (result.deviation <= allowed)
         return result;

@@ -14,6 +14,7 @@ namespace tessera {
 struct BoundResult {
     enum class Verdict : std::uint8_t {
         holds,
+        nothing,       ///< no texel centre was compared
         not_promised,  ///< exceeded; a condition is broken (bound_promise.h), which the set-up's remark names
         positions,     ///< exceeded by the rounding of positions
         heights,       ///< in the picture: by the rounding of heights to codes
@@ -31,7 +32,7 @@ struct BoundResult {
     std::string remedy;         ///< what to set, for rounding
 
     bool empty() const { return points == 0; }
-    bool passed() const { return verdict != Verdict::fault; }
+    bool passed() const { return verdict != Verdict::fault && verdict != Verdict::nothing; }
     std::string text() const;  ///< one sentence
 };
 

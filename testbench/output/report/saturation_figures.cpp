@@ -46,8 +46,9 @@ std::vector<SaturationFigure> saturation_figures(const MachineSetup& setup, cons
         {"degenerate_normal", saturations.degenerate_normal, "value", "zero vectors that stayed zero",
          without_tangents
              ? nullptr
-             : "the normals or tangents at an edge's ends are opposite: if the mesh's file has normals (vn), remove the "
-               "normals (vn) from the mesh's file, so that smooth ones are calculated",
+             : "the normals or tangents at an edge's ends are opposite. Of normals: if the mesh's file has normals (vn), "
+               "remove the normals (vn) from the mesh's file, so that smooth ones are calculated. Of tangents: the "
+               "texture is mirrored there, see the note on it",
          without_tangents ? "most are tangents between points of the base mesh that have none, see the notes on it"
                           : nullptr},
         {"generation", saturations.generation, "value",

@@ -132,14 +132,15 @@ TEST_CASE("thresholds of zero end at the map's resolution, the generation limit 
     CHECK(limited.end.exit_code == 4);
     CHECK_THAT(limited.end.err, Contains("limits.triangles = 5000"));
     CHECK(limited.here.names().empty());
-    // Only the triangle limit ends this run. With few texture bits triangles finish early; otherwise the queue would
-    // grow by gigabytes before the first does.
-    const Attempt endless = with({"limits.triangles=20000", "tests.generation=false", "tests.tex_coord=false",
-                                  "tests.view=false", "tests.summed_height_unit=area", "displacement.scale=1",
-                                  "map.width=64", "map.height=64", "formats.texture_fraction=2"});
-    INFO(endless.end.text());
-    CHECK(endless.end.exit_code == 4);
-    CHECK_THAT(endless.end.err, Contains("limits.triangles = 20000"));
+    // Only the triangle limit ends these runs, before the first triangle is finished.
+    for (const char* const mode : {"mode=functional", "mode=timed"})
+        for (const char* const order : {"hardware.queue_order=fifo", "hardware.queue_order=lifo"}) {
+            const Attempt endless = with({"limits.triangles=20000", "tests.generation=false", "tests.tex_coord=false",
+                                          "tests.view=false", mode, order});
+            INFO(endless.end.text());
+            CHECK(endless.end.exit_code == 4);
+            CHECK_THAT(endless.end.err, Contains("limits.triangles = 20000"));
+        }
 }
 
 TEST_CASE("the narrowest and widest formats run or report the value that does not fit") {

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <set>
 #include <sstream>
 
 #include "testbench/run_folder/ply_reader.h"
@@ -255,4 +256,54 @@ TEST_CASE("files of another run in the folder are removed") {
 
     succeed(run_of(frames(3)), here.path());
     CHECK(names_in(out) == three_frames);
+}
+
+TEST_CASE("frames: each note and each bound is printed once, where it comes first") {
+    const TestFolder here;
+    const ProgramEnd end =
+        run_tessera(run_of(frames(3, {"map.no_data=0.7", "hardware.height_test=rank", "formats.bound_bits=8",
+                                      "mesh.source=lattice", "mesh.spacing=16", "tests.bound_threshold=0.05"})),
+                    here.path());
+    INFO(end.text());
+    REQUIRE(end.exit_code == 0);
+    const std::vector<std::string> lines = lines_of(end.out);
+    const auto count = [&](const std::string& begin) {
+        return std::count_if(lines.begin(), lines.end(),
+                             [&](const std::string& line) { return line.find(begin) == 0; });
+    };
+    CHECK(count("  note: map: No texel has the value 0.7 of map.no_data") == 1);
+    CHECK(count("  note: tests.bound_threshold = 0.05 is not guaranteed: ") == 1);
+    CHECK(count("  bound ") >= 1);
+    CHECK(std::set<std::string>(lines.begin(), lines.end()).size() == lines.size());
+    CHECK_THAT(read_all(here / "out/frames.txt"), Contains("  note: map: No texel has the value 0.7"));
+}
+
+TEST_CASE("map.no_data holds for built-in maps, too") {
+    const TestFolder here;
+    const auto run_with = [&](const std::string& source, const std::string& no_data) {
+        return run_tessera(run_of({"map.source=" + source, "map.value=0.5", "map.no_data=" + no_data, "map.width=32",
+                                   "map.height=32", "output.folder=out"}),
+                           here.path());
+    };
+    const ProgramEnd all = run_with("constant", "0.5");
+    CHECK(all.exit_code == 2);
+    CHECK_THAT(all.err, Contains("every texel of the built-in map"));
+    const ProgramEnd some = run_with("half_donut", "0");
+    INFO(some.text());
+    CHECK(some.exit_code == 0);
+    CHECK_THAT(some.out, Contains("note: map: ") && Contains("all checks passed"));
+}
+
+TEST_CASE("tune, widths and rank print the notes on their inputs") {
+    const Arguments inputs = set({"map.no_data=0.7", "map.width=32", "map.height=32", "mesh.source=lattice",
+                                  "mesh.spacing=8", "hardware.height_test=summed_height"});
+    for (const Arguments& command :
+         {Arguments{"tune", "--triangles", "60", "--vary", "none"},
+          Arguments{"widths", "--quantity", "normal", "--bits", "16..16"}, Arguments{"rank", "--output", "ranks"}}) {
+        const TestFolder here;
+        const ProgramEnd end = run_tessera(command + inputs, here.path());
+        INFO(end.text());
+        CHECK(end.exit_code == 0);
+        CHECK_THAT(end.out, Contains("  note: map: No texel has the value 0.7 of map.no_data"));
+    }
 }

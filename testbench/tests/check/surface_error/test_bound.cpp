@@ -201,6 +201,18 @@ TEST_CASE("bound: a mesh that is not the promised one fails the run") {
     CHECK_THAT(wrong->text(), Contains("a fault of tessera"));
 }
 
+TEST_CASE("bound: with nothing of the mesh in the picture the check fails") {
+    const BoundRun away(in_the_picture + "camera.eye=[0,-3,1] camera.target=[0,-6,1]");
+    REQUIRE(away.result);
+    CHECK(away.result->verdict == BoundResult::Verdict::nothing);
+    CHECK_FALSE(away.result->passed());
+    CHECK_THAT(away.result->text(), Contains("set camera.target = \"auto\""));
+    const BoundRun back(in_the_picture + "camera.eye=[0,-3,1] camera.target=auto");
+    REQUIRE(back.result);
+    CHECK(back.result->points > 0);
+    CHECK(back.result->passed());
+}
+
 TEST_CASE("bound: the near plane between the map and the mesh is named") {
     BoundRun run(in_the_picture);
     BoundResult result = *run.result;
