@@ -109,13 +109,11 @@ EdgeEvaluation evaluate_edge(const Vertex& i, const Vertex& j, const Map& map, c
     const Rectangle size = map.rectangle_size(i.texture, j.texture);
     e.rectangle_width = size.width;
     e.rectangle_height = size.height;
-    if (enabled.summed_height) {
-        const HeightTest::Verdict verdict = map.height_test().decide(i, j, m, map, parameters);
-        e.summed_height_test = verdict.asks;
-        e.order = verdict.order;
-        e.height = verdict.value;
-        e.height_limit = verdict.limit;
-    }
+    const HeightTest::Verdict verdict = map.height_test().decide(i, j, m, map, parameters);
+    e.summed_height_test = enabled.summed_height && verdict.asks;
+    e.order = enabled.summed_height ? verdict.order : 0;
+    e.height = verdict.value;
+    e.height_limit = verdict.limit;
 
     e.view_length = view_length(i, j);
     e.view_test = !enabled.view || e.view_length > parameters.view_threshold;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 
 #include "modules/datapath/triangle_pass.h"
 #include "modules/datapath/triangulate.h"
@@ -52,8 +51,6 @@ RefinementForest::RefinementForest(const MachineSetup& setup, const TexelError* 
       setup_(setup),
       height_test_(functions_of(setup.registers.formats.height_test)),
       errors_(errors) {
-    if (height_test_.compared < 0)
-        throw std::logic_error("RefinementForest: the height test does not compare one value with a threshold");
     DistinctTable known;
     const auto number_of = [&](const Vertex& vertex) {
         const std::uint32_t number = known.number_of(
@@ -85,7 +82,7 @@ RefinementForest::Edge RefinementForest::make_edge(const Vertex& i, const Vertex
                            largest_difference(tests.displaced_normal, j.displaced_normal));
     const datapath::TexCoord& middle = pass.new_vertex[0].texture;
     const datapath::HeightDecision heights = datapath_.test_heights({i.texture, j.texture, middle});
-    edge.height = heights.values[static_cast<std::size_t>(height_test_.compared)];
+    edge.height = heights.values.at(static_cast<std::size_t>(height_test_.compared));
     edge.weight = static_cast<std::uint32_t>(height_test_.weight(heights));
     edge.view = pixels(i.screen, j.screen);
     edge.open = datapath::tex_coord_test(i.texture, j.texture, middle, r.formats);

@@ -30,7 +30,7 @@ struct Outcome {
 /// triangulation come from the setup and must not change.
 class RefinementForest {
   public:
-    /// `setup` must outlive it. `errors`: measures triangles; may be null for a forest that only counts.
+    /// `setup` must outlive it; its height test compares one value with a threshold. `errors`: measures triangles; may be null for a forest that only counts.
     RefinementForest(const MachineSetup& setup, const TexelError* errors);
 
     /// Counts the triangles; stops at `limit`.

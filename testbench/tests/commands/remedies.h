@@ -36,6 +36,7 @@ inline const std::map<std::string, std::vector<Remedy>>& remedies() {
              {"{ echo P2 48 48 65535; awk 'BEGIN { for (k = 0; k < 2304; ++k) print k < 300 ? 0 : 50000 + k % 100 }'; } > a.pgm; run map.file=a.pgm",
               "if that marks missing data, set map.no_data = {}", ""},
              {"run map.source=text 'map.text='", "set map.text", "run map.source=text map.text=A"},
+             {"run map.source=constant map.value=0.5 map.no_data=0.5", "set map.no_data = []", ""},
              {"run formats.texture_integer=5", "set formats.texture_integer = {}", ""},
              {"run formats.texture_integer=5", "or map.width and map.height to at most {}",
               "run formats.texture_integer=5 map.width=$1 map.height=$1"},
