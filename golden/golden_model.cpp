@@ -196,7 +196,7 @@ int Triangle::generation() const {
 }
 
 Tessellation tessellate(const std::vector<std::array<Vertex, 3>>& base, const Map& map, const Parameters& parameters,
-                        std::uint64_t bound, const std::function<void(const Triangle&)>& emit) {
+                        const std::atomic<std::uint64_t>& bound, const std::function<void(const Triangle&)>& emit) {
     Tessellation result;
     std::vector<Triangle> waiting;
     for (std::size_t index = base.size(); index-- > 0;) {
@@ -243,6 +243,11 @@ Tessellation tessellate(const std::vector<std::array<Vertex, 3>>& base, const Ma
         }
     }
     return result;
+}
+
+Tessellation tessellate(const std::vector<std::array<Vertex, 3>>& base, const Map& map, const Parameters& parameters,
+                        std::uint64_t bound, const std::function<void(const Triangle&)>& emit) {
+    return tessellate(base, map, parameters, std::atomic<std::uint64_t>(bound), emit);
 }
 
 }  // namespace tessera::golden

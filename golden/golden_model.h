@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -174,6 +175,9 @@ struct Tessellation {
 /// Sections 4 and 5: tessellates base triangles (the first five members of each vertex are read), depth first in the
 /// children's order. Without the generation test the recursion may not end, so it stops when the number of triangles
 /// emitted and waiting exceeds `bound`; each waiting triangle yields at least one of the mesh.
+/// `bound` may change meanwhile.
+Tessellation tessellate(const std::vector<std::array<Vertex, 3>>& base, const Map& map, const Parameters& parameters,
+                        const std::atomic<std::uint64_t>& bound, const std::function<void(const Triangle&)>& emit);
 Tessellation tessellate(const std::vector<std::array<Vertex, 3>>& base, const Map& map, const Parameters& parameters,
                         std::uint64_t bound, const std::function<void(const Triangle&)>& emit);
 

@@ -13,8 +13,6 @@ namespace {
 
 using BaseTriangles = std::vector<std::array<golden::Vertex, 3>>;
 
-struct TooManyTriangles {};
-
 using Told = std::function<void(double)>;
 
 std::uint64_t bound_of(const EmittedMesh& hardware) {
@@ -158,16 +156,8 @@ GoldenRun::GoldenRun(const MachineSetup& setup, const GoldenJob& golden,
     }
     surface_ = beside([this] {
         GoldenSurface surface;
-        const auto add = [&](const golden::Triangle& t) {
-            if (surface.triangles.size() >= most_)
-                throw TooManyTriangles{};
-            surface.add(t);
-        };
-        try {
-            surface.run = golden::tessellate(base_, golden_.map(), parameters_, UINT64_MAX, add);
-        } catch (const TooManyTriangles&) {
-            surface.run.bound_hit = true;
-        }
+        surface.run = golden::tessellate(base_, golden_.map(), parameters_, most_,
+                                         [&](const golden::Triangle& t) { surface.add(t); });
         return surface;
     });
 }
