@@ -126,6 +126,17 @@ TEST_CASE("height tests: an edge asks for a split if the compared value exceeds 
             const std::uint64_t value = decision.values[static_cast<std::size_t>(test.compared)];
             CHECK(decision.asks == (value > test.limit(test.weight(decision), r.tests)));
             asked += decision.asks ? 1 : 0;
+            // With a limit of the value itself, and of one less.
+            r.tests.summed_height_unit = SummedHeightUnit::sum;
+            for (const std::uint64_t below : {std::uint64_t{0}, std::uint64_t{1}}) {
+                if (value < below)
+                    continue;
+                r.tests.summed_height_threshold = r.tests.curvature_threshold = value - below;
+                r.tests.mipmap_threshold = static_cast<std::uint32_t>(value - below);
+                HeightDecision exact;
+                test.decide(edge, entries, r, exact);
+                CHECK(exact.asks == (below == 1));
+            }
         }
         CHECK(asked > 50);
         CHECK(asked < 1950);
