@@ -76,16 +76,16 @@ Pipeline::Pipeline(const sc_core::sc_module_name& name, const datapath::Register
       displacement_map_for_tests(make_second_side(registers, design)),
       normal_map("normal_map", clock, registers.normal_map, design.timing.normal_map, design.timing.stalls,
                  &off_chip_memory.channel()),
-      height_table(kind_of(registers.formats.height_test).table, clock, registers.height_table,
-                   design.timing.*kind_of(registers.formats.height_test).table_timing, design.timing.stalls,
+      height_table(functions_of(registers.formats.height_test).table().c_str(), clock, registers.height_table,
+                   height_table_timing(design.timing, registers.formats), design.timing.stalls,
                    &off_chip_memory.channel()),
       displacement_map_cache(make_cache("displacement_map_cache", registers.displacement_map,
                                         design.timing.displacement_map, design.timing.stalls)),
       normal_map_cache(
           make_cache("normal_map_cache", registers.normal_map, design.timing.normal_map, design.timing.stalls)),
-      height_table_cache(make_cache(
-          (std::string(kind_of(registers.formats.height_test).table) + "_cache").c_str(), registers.height_table,
-          design.timing.*kind_of(registers.formats.height_test).table_timing, design.timing.stalls)),
+      height_table_cache(make_cache((functions_of(registers.formats.height_test).table() + "_cache").c_str(),
+                                    registers.height_table, height_table_timing(design.timing, registers.formats),
+                                    design.timing.stalls)),
       registers_(registers),
       answer_limit_(clock.period() * design.answer_cycles),
       transport_(design.transport),
@@ -109,13 +109,13 @@ Pipeline::Pipeline(const sc_core::sc_module_name& name, const datapath::Register
 void Pipeline::set_table_areas() {
     const datapath::Registers& r = registers_;
     const datapath::Formats& f = r.formats;
-    const HeightTestKind& height = kind_of(f.height_test);
+    const datapath::HeightTestFunctions& height = functions_of(f.height_test);
     const unsigned texels = datapath::map_entry_count(f);
     const auto across = [](datapath::AddressMode mode) { return mode == datapath::AddressMode::repeat ? 3u : 2u; };
     const unsigned corners = across(r.map.address_u) * across(r.map.address_v);
     displacement_map.set_area(f.displacement.bits, texels);
     if (displacement_map_for_tests != nullptr)
-        displacement_map_for_tests->set_area(f.displacement.bits, height.functions->codes);
+        displacement_map_for_tests->set_area(f.displacement.bits, height.codes);
     normal_map.set_area(3 * f.normal.bits, texels);
     height_table.set_area(datapath::height_entry_bits(f), height.rectangles ? corners : 1);
 }

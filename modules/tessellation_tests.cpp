@@ -2,8 +2,6 @@
 
 #include <string>
 
-#include "modules/timing/height_test_kind.h"
-
 namespace tessera {
 
 TessellationTests::Units TessellationTests::make(const UnitContext& context, UnitFactory& factory, unsigned number) {
@@ -11,7 +9,7 @@ TessellationTests::Units TessellationTests::make(const UnitContext& context, Uni
     Units made;
     made.calculate_new_u = factory.calculate_new_u("calculate_new_u", context);
     made.tex_coord_test = factory.tex_coord_test("tex_coord_test", context);
-    made.height_test = factory.height_test(kind_of(context.registers.formats.height_test).unit, context);
+    made.height_test = factory.height_test(functions_of(context.registers.formats.height_test).unit().c_str(), context);
     made.normal_test = factory.normal_test("normal_test", context, takes);
     made.view_test = factory.view_test("view_test", context, takes);
     if (context.design.test_order == TestOrder::parallel)

@@ -196,10 +196,14 @@ inline Multiplications curvature_measure_multiplications(const Formats& f) {
 ///         and banks of the first, or, if the map has a cache, through Displace Vertex's cache.
 /// Arithmetic: a count of leading zeros and shifts for the level; three products of 4 x 4 bits, three of 8 x 7, their
 ///         sum, a shift, a compare.
-/// Timing: latency 4 after the last entry; interval 1 by default. With one port a short edge's codes take three cycles.
+/// Timing: interval 1 by default. With one port a short edge's codes take three cycles.
 class CurvatureTest : public HeightTestFunctions {
   public:
-    constexpr CurvatureTest() : HeightTestFunctions(1) {
+    constexpr CurvatureTest() : HeightTestFunctions("curvature", 1) {
+        work = "one read, or three codes of the displacement map, through its own ports";
+        arithmetic = "multiply, add, compare";
+        latency = 4;  // products, sum, shift, compare
+        feature = 6;
         codes = 3;
         second_side = true;
         covers_more = true;

@@ -1,7 +1,9 @@
 #pragma once
 #include <array>
+#include <cctype>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 
 #include "modules/datapath/multiplications.h"
 #include "modules/datapath/parameters.h"
@@ -47,6 +49,12 @@ class HeightTestFunctions {
 
     virtual ~HeightTestFunctions() = default;
 
+    const char* name;       ///< value of the key hardware.height_test: "mipmap" for the Mipmap Test and its table
+    const char* work = "";  ///< what it does with an edge, for the table of units in modules/README.md
+    const char* arithmetic = "";
+    unsigned latency = 1;      ///< cycles, after the last entry
+    int feature = -1;          ///< its bit of the device's register `features`; -1: none
+    bool rectangles = false;   ///< a request reads the corners of a rectangle; otherwise one entry
     unsigned requests;         ///< of an edge to the test's table, unless it reads codes or nothing
     unsigned codes = 0;        ///< entries of the displacement map that a short edge may read instead
     bool second_side = false;  ///< also codes of vertices not yet displaced: an on-chip map has a second side for it
@@ -54,6 +62,12 @@ class HeightTestFunctions {
     bool may_read_nothing = false;              ///< it decides some edges without a read
     std::array<Value, height_values> values{};  ///< the last ones have no name: unused
     int compared = -1;  ///< number of the value that is compared with limit(); -1: another decision
+
+    /// Names of its unit and its table, of their modules and in text.
+    std::string unit() const { return std::string(name) + "_test"; }
+    std::string table() const { return std::string(name) + "_table"; }
+    std::string title() const { return capitalised(unit()); }
+    std::string table_title() const { return capitalised(table()); }
 
     /// Bits of an entry of the test's table.
     virtual int entry_bits(const Formats& formats) const = 0;
@@ -83,7 +97,22 @@ class HeightTestFunctions {
                         HeightDecision& decision) const = 0;
 
   protected:
-    constexpr explicit HeightTestFunctions(unsigned most_requests) : requests(most_requests) {}
+    constexpr HeightTestFunctions(const char* its_name, unsigned most_requests)
+        : name(its_name), requests(most_requests) {}
+
+  private:
+    /// "Mipmap Test" for "mipmap_test".
+    static std::string capitalised(std::string words) {
+        bool first = true;
+        for (char& letter : words) {
+            if (first)
+                letter = static_cast<char>(std::toupper(static_cast<unsigned char>(letter)));
+            first = letter == '_';
+            if (first)
+                letter = ' ';
+        }
+        return words;
+    }
 };
 
 }  // namespace tessera::datapath

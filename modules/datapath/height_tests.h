@@ -1,6 +1,6 @@
 #pragma once
-#include <array>
 #include <cstddef>
+#include <vector>
 
 #include "modules/datapath/curvature.h"
 #include "modules/datapath/mipmap.h"
@@ -13,11 +13,14 @@ template <class Test>
 inline const Test the_test{};
 
 /// One for each HeightTest, in its order.
-inline constexpr std::array<const HeightTestFunctions*, 4> height_tests{
-    &the_test<SummedHeightTest>, &the_test<RankTest>, &the_test<CurvatureTest>, &the_test<MipmapTest>};
+inline const std::vector<const HeightTestFunctions*>& height_tests() {
+    static const std::vector<const HeightTestFunctions*> all{&the_test<SummedHeightTest>, &the_test<RankTest>,
+                                                             &the_test<CurvatureTest>, &the_test<MipmapTest>};
+    return all;
+}
 
-constexpr const HeightTestFunctions& functions_of(HeightTest test) {
-    return *height_tests[static_cast<std::size_t>(test)];
+inline const HeightTestFunctions& functions_of(HeightTest test) {
+    return *height_tests()[static_cast<std::size_t>(test)];
 }
 
 /// Bits of an entry of the height test's table.

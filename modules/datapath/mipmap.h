@@ -108,10 +108,14 @@ constexpr bool mipmap_test(std::uint64_t difference, const TestParameters& param
 ///         request each, since they may be in different banks. The map itself is level 0, so that short edges need no
 ///         second port.
 /// Arithmetic: a count of leading zeros and shifts for the level; two adds, a compare.
-/// Timing: latency 2 after the last entry; interval 1 by default. With one port an edge's entries take three cycles.
+/// Timing: interval 1 by default. With one port an edge's entries take three cycles.
 class MipmapTest : public HeightTestFunctions {
   public:
-    constexpr MipmapTest() : HeightTestFunctions(3) {
+    constexpr MipmapTest() : HeightTestFunctions("mipmap", 3) {
+        work = "three reads";
+        arithmetic = "add, compare";
+        latency = 2;  // level and addresses, compare
+        feature = 12;
         values = {{{"level", 4}, {"difference", 17}}};
         compared = 1;
     }

@@ -19,10 +19,12 @@ namespace tessera::datapath {
 ///       (Formats::distances) a bound comes with a radius.
 /// Arithmetic: two subtractions, an OR of their lowest bits, two compares. View-dependent also one subtraction, two
 ///       leading-zero counts, three shifts and two adds.
-/// Timing: latency 1 after the entry; interval 1 by default.
 class RankTest : public HeightTestFunctions {
   public:
-    constexpr RankTest() : HeightTestFunctions(1) {
+    constexpr RankTest() : HeightTestFunctions("rank", 1) {
+        work = "one read, from a table that the host makes";
+        arithmetic = "compare";
+        feature = 5;
         covers_more = true;
         may_read_nothing = true;
         values = {{{"rank", 16}, {"bound", 16}, {"radius", radius_bits}, {"level", 18}}};

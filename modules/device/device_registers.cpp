@@ -152,7 +152,7 @@ Device::Failure Device::check(const datapath::Registers& machine) const {
         return at(DeviceError::bad_map_size, "map.height");
     const bool ranks = machine.formats.height_test == datapath::HeightTest::rank;
     if (functions_of(machine.formats.height_test).covers_more) {
-        const std::string table = kind_of(machine.formats.height_test).table;
+        const std::string table = functions_of(machine.formats.height_test).table();
         if (machine.covered.columns == 0 || machine.covered.columns > design_.largest_map.width)
             return at(DeviceError::bad_map_size, (table + ".columns").c_str());
         if (machine.covered.rows == 0 || machine.covered.rows > design_.largest_map.height)

@@ -6,8 +6,8 @@
 #include <sstream>
 #include <utility>
 
+#include "modules/datapath/height_tests.h"
 #include "modules/device/records.h"
-#include "modules/timing/height_test_kind.h"
 
 namespace tessera {
 
@@ -76,7 +76,7 @@ std::vector<DeviceRegister> documented_registers() {
     registers.formats.distances = true;
     registers.formats.rank_bits = registers.formats.bound_bits = 16;
     std::vector<DeviceRegister> all = register_map({}, {});
-    for (std::size_t kind = 1; kind < height_test_kinds.size(); ++kind) {  // each has the paper's registers
+    for (std::size_t kind = 1; kind < datapath::height_tests().size(); ++kind) {  // each has the paper's registers
         registers.formats.height_test = static_cast<datapath::HeightTest>(kind);
         for (DeviceRegister& made : register_map(registers, {}))
             if (std::none_of(all.begin(), all.end(), [&](const DeviceRegister& r) { return r.name == made.name; }))
@@ -99,7 +99,7 @@ std::string c_header(const std::vector<DeviceRegister>& registers) {
     for (const DeviceRegister& r : registers)
         text << "#define TESSERA_" << upper_case(r.name) << " 0x" << hex(r.offset, 3) << "u\n";
     text << "#define TESSERA_REGISTER_BYTES 0x" << hex(register_bytes, 3) << "u\n\n/* Bits of control registers. */\n";
-    for (const RegisterBit& bit : register_bits)
+    for (const RegisterBit& bit : register_bits())
         text << "#define TESSERA_" << upper_case(bit.register_name) << "_" << upper_case(bit.name) << " (1u << "
              << bit.bit << ")  /* " << bit.meaning << " */\n";
     text << "\n/* Register `error`. */\nenum tessera_error {\n";
@@ -136,7 +136,7 @@ std::string systemverilog_package(const std::vector<DeviceRegister>& registers) 
              << hex(r.reset, 1) << ";\n";
     }
     text << "\n  // Bits of control registers.\n";
-    for (const RegisterBit& bit : register_bits)
+    for (const RegisterBit& bit : register_bits())
         text << "  localparam int unsigned " << upper_case(bit.register_name) << "_" << upper_case(bit.name)
              << "_BIT = " << bit.bit << ";  // " << bit.meaning << "\n";
     text << "\n  // Register error.\n  typedef enum logic [3:0] {\n";
@@ -167,10 +167,11 @@ std::string registers_as_json(const std::vector<DeviceRegister>& registers) {
              << "\", \"meaning\": \"" << r.meaning << "\"}" << (&r == &registers.back() ? "\n" : ",\n");
     }
     text << "  ],\n  \"bits\": [\n";
-    for (const RegisterBit& bit : register_bits)
+    const std::vector<RegisterBit> bits = register_bits();
+    for (const RegisterBit& bit : bits)
         text << "    {\"register\": \"" << bit.register_name << "\", \"name\": \"" << bit.name
              << "\", \"bit\": " << bit.bit << ", \"meaning\": \"" << bit.meaning << "\"}"
-             << (&bit == &register_bits.back() ? "\n" : ",\n");
+             << (&bit == &bits.back() ? "\n" : ",\n");
     text << "  ],\n  \"errors\": [\n";
     for (const ErrorMeaning& error : error_meanings)
         text << "    {\"value\": " << static_cast<int>(error.error) << ", \"name\": \"" << error.name
@@ -195,10 +196,10 @@ std::string registers_page(const std::vector<DeviceRegister>& registers) {
         text << "| 0x" << hex(r.offset, 3) << " | `" << r.name << "` | " << (r.is_signed ? "signed " : "") << r.bits
              << " | " << access_name(r.access) << (r.while_busy ? "*" : "") << " | " << (r.reset < 10 ? "" : "0x")
              << hex(r.reset, 1) << " | " << r.meaning
-             << (r.only_with[0] == 0 ? std::string() : std::string(" (only in a design with a ") + r.only_with + ")")
+             << (r.only_with.empty() ? std::string() : std::string(" (only in a design with a ") + r.only_with + ")")
              << " |\n";
     text << "\n## Bits\n\n| register | bit | name | meaning |\n| --- | --- | --- | --- |\n";
-    for (const RegisterBit& bit : register_bits)
+    for (const RegisterBit& bit : register_bits())
         text << "| `" << bit.register_name << "` | " << bit.bit << " | `" << bit.name << "` | " << bit.meaning
              << " |\n";
     text

@@ -1,9 +1,11 @@
 #include "modules/device/register_map.h"
 
+#include <algorithm>
+
+#include "modules/datapath/height_tests.h"
 #include "modules/datapath/map_entry.h"
 #include "modules/datapath/registers.h"
 #include "modules/device/records.h"
-#include "modules/timing/height_test_kind.h"
 
 namespace tessera {
 
@@ -17,10 +19,15 @@ std::uint64_t packed(const Format& format) {
     return static_cast<std::uint64_t>(format.bits) | static_cast<std::uint64_t>(format.fraction) << 8;
 }
 
+unsigned feature_bit(const Formats& f) {
+    const int bit = functions_of(f.height_test).feature;
+    return bit < 0 ? 0 : 1u << bit;
+}
+
 std::uint64_t features(const Formats& f) {
     return (f.highlight_tag ? 1u : 0u) | (f.final_edges ? 2u : 0u) | (f.codes ? 4u : 0u) | (f.families ? 8u : 0u) |
-           (f.filter == datapath::MapFilter::bilinear ? 16u : 0u) | kind_of(f.height_test).feature |
-           (f.distances ? 128u : 0u) | static_cast<std::uint64_t>(f.generation_bits) << 8;
+           (f.filter == datapath::MapFilter::bilinear ? 16u : 0u) | feature_bit(f) | (f.distances ? 128u : 0u) |
+           static_cast<std::uint64_t>(f.generation_bits) << 8;
 }
 
 std::uint64_t entry_sizes(const Formats& f) {
@@ -111,12 +118,12 @@ bool has_register(datapath::HeightTest kind, bool highlight, bool distances, con
 }
 
 /// The test that a register belongs to; empty if every design has the register. kind: that of a design that has it.
-const char* test_of(const std::string& name, datapath::HeightTest kind) {
+std::string test_of(const std::string& name, datapath::HeightTest kind) {
     if (has_register(datapath::HeightTest::summed_height, false, false, name))
         return "";
     if (!has_register(kind, false, true, name))
         return "Highlight Test";
-    return has_register(kind, false, false, name) ? kind_of(kind).title : "view-dependent Rank Test";
+    return has_register(kind, false, false, name) ? functions_of(kind).title() : "view-dependent Rank Test";
 }
 
 struct Place {
@@ -124,14 +131,14 @@ struct Place {
     std::string name;  ///< name of one value of the register
     std::uint32_t offset;
     int words;
-    const char* only_with;
+    std::string only_with;
 };
 
 /// The places of the machine's registers, over all designs.
 std::vector<Place> machine_places() {
     std::vector<Place> places;
     std::uint32_t next = offset::machine;
-    for (std::size_t number = 0; number < height_test_kinds.size(); ++number) {
+    for (std::size_t number = 0; number < datapath::height_tests().size(); ++number) {
         const auto kind = static_cast<datapath::HeightTest>(number);
         visit_widest(kind, true, true, [&](const datapath::Register& field, const auto& values) {
             const std::string name = field.name;
@@ -150,6 +157,18 @@ std::vector<Place> machine_places() {
 }
 
 }  // namespace
+
+std::vector<RegisterBit> register_bits() {
+    std::vector<RegisterBit> bits(control_bits.begin(), control_bits.end());
+    for (const datapath::HeightTestFunctions* const test : datapath::height_tests())
+        if (test->feature >= 0)
+            bits.push_back({"features", test->unit(), test->feature,
+                            "a " + test->title() + " in place of the Summed Height Test"});
+    const auto features = std::find_if(
+        bits.begin(), bits.end(), [](const RegisterBit& bit) { return bit.register_name == std::string("features"); });
+    std::sort(features, bits.end(), [](const RegisterBit& a, const RegisterBit& b) { return a.bit < b.bit; });
+    return bits;
+}
 
 std::vector<DeviceRegister> register_map(const datapath::Registers& reset, const LargestMap& largest) {
     std::vector<DeviceRegister> map = control_registers(reset.formats, largest);

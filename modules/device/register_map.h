@@ -26,16 +26,16 @@ struct DeviceRegister {
     std::uint64_t reset;
     RegisterAccess access;
     bool while_busy;        ///< may be written while a frame is under way
-    const char* only_with;  ///< the register exists only in designs with this test; empty: in all designs
+    std::string only_with;  ///< the register exists only in designs with this test; empty: in all designs
     std::string meaning;
 };
 
 /// One bit of a control register.
 struct RegisterBit {
     const char* register_name;
-    const char* name;
-    unsigned bit;
-    const char* meaning;
+    std::string name;
+    int bit;
+    std::string meaning;
 };
 
 /// The offsets of the control registers that the device itself uses.
@@ -55,7 +55,8 @@ inline constexpr std::uint32_t control_start = 1, control_reset = 2;
 inline constexpr std::uint32_t status_busy = 1, status_done = 2, status_error = 4, status_resetting = 8;
 inline constexpr std::uint32_t interrupt_done = 1, interrupt_error = 2;
 
-inline constexpr std::array<RegisterBit, 20> register_bits{{
+/// Besides those of the height tests in `features`.
+inline const std::array<RegisterBit, 17> control_bits{{
     {"control", "start", 0, "starts a frame"},
     {"control", "reset", 1, "stops a frame and sets all registers to their reset values"},
     {"status", "busy", 0, "a frame is being processed, or a reset is waiting for the machine to drain"},
@@ -72,11 +73,11 @@ inline constexpr std::array<RegisterBit, 20> register_bits{{
     {"features", "codes", 2, "vertices carry displacement codes"},
     {"features", "families", 3, "the family design"},
     {"features", "bilinear", 4, "bilinear filter for the maps"},
-    {"features", "rank_test", 5, "a Rank Test in place of the Summed Height Test"},
-    {"features", "curvature_test", 6, "a Curvature Test in its place"},
     {"features", "distances", 7, "a view-dependent Rank Test"},
-    {"features", "mipmap_test", 12, "a Mipmap Test in its place"},
 }};
+
+/// All, those of a register in their order.
+std::vector<RegisterBit> register_bits();
 
 /// The reason for refusing or stopping a frame: register `error`. The meaning states what `error_address` then holds.
 enum class DeviceError : std::uint8_t {

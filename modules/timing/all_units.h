@@ -7,7 +7,7 @@
 #include "modules/timing/timing.h"
 
 // What is known of each unit and of each table's memory besides its code. Keys, the table of units in modules/README.md,
-// the numbers in waveforms, the random designs and the kinds of height tests are derived from these lists. Includes no
+// the numbers in waveforms and the random designs are derived from these lists. Includes no
 // SystemC: job files, fuzzers and the host's libraries are built without it.
 
 namespace tessera {
@@ -36,8 +36,11 @@ struct UnitSpec {
     UnitParameter further{};
 };
 
+/// The unit that has the name of the design's height test, and its arithmetic (datapath/height_test.h).
+inline constexpr const char* height_test_unit = "height_test";
+
 /// In the order of the paper's figures; after a unit those that replace it.
-inline constexpr std::array<UnitSpec, 18> all_units = {{
+inline constexpr std::array<UnitSpec, 15> all_units = {{
     {"get_triangle", "Get Triangle",
      "takes a triangle from the queue, else from the host; sends its new parts down both branches, and the triangle itself "
      "to Pass or Tessellate",
@@ -50,16 +53,8 @@ inline constexpr std::array<UnitSpec, 18> all_units = {{
     {"calculate_new_u", "Calculate New U", "t_ij", "add, shift", &Timing::calculate_new_u, Per::lane},
     {"tex_coord_test", "Tex Coord Test", "compares integer parts; includes the Generation Test", "compare",
      &Timing::tex_coord_test, Per::lane},
-    {"summed_height_test", "Summed Height Test", "three rectangles, twelve reads", "add, compare",
-     &Timing::summed_height_test, Per::tests_unit, true},
-    {"rank_test", "Rank Test", "replaces it with `height_test = \"rank\"`: one read, from a table that the host makes",
-     "compare", &Timing::rank_test, Per::tests_unit, true},
-    {"curvature_test", "Curvature Test",
-     "replaces it with `height_test = \"curvature\"`: one read, or three codes of the displacement map, through its own "
-     "ports",
-     "multiply, add, compare", &Timing::curvature_test, Per::tests_unit, true},
-    {"mipmap_test", "Mipmap Test", "replaces it with `height_test = \"mipmap\"`: three reads", "add, compare",
-     &Timing::mipmap_test, Per::tests_unit, true},
+    {height_test_unit, "Height test", "the Summed Height Test, or the test in its place", "", &Timing::height_test,
+     Per::tests_unit, true},
     {"normal_test",
      "Normal Test",
      "N_ij, T_ij, N'_ij, six differences; includes the Highlight Test",
@@ -108,14 +103,12 @@ struct MemorySpec {
     bool rectangles = false;  ///< a request reads the corners of a rectangle; otherwise one entry
 };
 
-/// A design has the two maps, and the table of its height test.
-inline constexpr std::array<MemorySpec, 6> all_table_memories = {{
+/// A design has the two maps, and one of the two others: the table of its height test, which names its module.
+inline constexpr std::array<MemorySpec, 4> all_table_memories = {{
     {"displacement_map", "Displacement map", &Timing::displacement_map},
     {"normal_map", "Normal map", &Timing::normal_map},
     {"summed_height_table", "Summed Height Table", &Timing::summed_height_table, true},
-    {"rank_table", "Rank Table", &Timing::rank_table},
-    {"curvature_table", "Curvature Table", &Timing::curvature_table},
-    {"mipmap_table", "Mipmap Table", &Timing::mipmap_table},
+    {"height_table", "Table of another height test", &Timing::height_table},
 }};
 
 /// The entry of a list with this name; in a constant expression, an error if there is none.

@@ -4,7 +4,7 @@
 #include "modules/datapath/parameters.h"
 #include "modules/timing/cycle_scheduler.h"
 #include "modules/timing/design_options.h"
-#include "modules/timing/height_test_kind.h"
+#include "modules/timing/height_test_timing.h"
 #include "modules/timing/timing.h"
 
 namespace tessera {
@@ -32,7 +32,7 @@ constexpr unsigned register_stages(const UnitTiming& timing, unsigned servers = 
 /// Latency of the height test's reads: from its table or, for codes, from the displacement map.
 inline unsigned height_test_latency(const Design& design, const datapath::Formats& formats) {
     const Timing& t = design.timing;
-    const MemoryTiming& its = t.*kind_of(formats.height_test).table_timing;
+    const MemoryTiming& its = height_table_timing(t, formats);
     // If the table overlaps the reads of `window` rectangles, there are places for their edges: those for the latency
     // alone would be four, half of the rectangles that a window of 24 overlaps.
     const unsigned table = t.read_latency(its) + its.window / 3;

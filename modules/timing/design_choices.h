@@ -1,7 +1,8 @@
 #pragma once
+#include <cstddef>
 #include <string_view>
 
-#include "modules/timing/height_test_kind.h"
+#include "modules/datapath/height_tests.h"
 #include "modules/timing/timing.h"
 #include "modules/timing/work.h"
 
@@ -34,6 +35,12 @@ enum class TestOrder {
 
 // The enumerators' names in job files. One switch per enumeration, so that the compiler refuses an enumerator without a
 // name.
+
+/// Empty if there is no such test.
+inline std::string_view name_of(datapath::HeightTest value) {
+    const auto number = static_cast<std::size_t>(value);
+    return number < datapath::height_tests().size() ? datapath::height_tests()[number]->name : std::string_view{};
+}
 
 constexpr std::string_view name_of(TriangleOrder value) {
     switch (value) {

@@ -62,12 +62,9 @@ struct Timing {
     UnitTiming transform{20, 1, 1};
     UnitTiming calculate_new_u{1, 1, 1};
     UnitTiming tex_coord_test{1, 1, 1};
-    UnitTiming summed_height_test{3, 1, 1};  ///< differences, addresses, compare; the table reads come on top
-    UnitTiming rank_test{1, 1, 1};           ///< compare; the table read comes on top
-    UnitTiming curvature_test{4, 1, 1};      ///< products, sum, shift, compare; the table read comes on top
-    UnitTiming mipmap_test{2, 1, 1};         ///< level and addresses, compare; the table reads come on top
-    UnitTiming normal_test{9, 1, 1};         ///< normalise, bump, normalise, compare; the map read comes on top
-    unsigned highlight_test_latency = 1;     ///< N'.H: on top of the Normal Test's, in a design with a Highlight Test
+    UnitTiming height_test{0, 1, 1};      ///< latency 0: the test's own; the table reads come on top
+    UnitTiming normal_test{9, 1, 1};      ///< normalise, bump, normalise, compare; the map read comes on top
+    unsigned highlight_test_latency = 1;  ///< N'.H: on top of the Normal Test's, in a design with a Highlight Test
     UnitTiming view_test{1, 1, 1};
     UnitTiming pass_or_tessellate{1, 1, 8};  ///< buffer: triangles that are not complete
     UnitTiming tessellation{1, 1, 1};
@@ -78,10 +75,8 @@ struct Timing {
         32;  ///< tests cheapest first: edges between their cheap tests' results and their departure
     MemoryTiming displacement_map;
     MemoryTiming normal_map;
-    MemoryTiming summed_height_table;
-    MemoryTiming rank_table;
-    MemoryTiming curvature_table;
-    MemoryTiming mipmap_table;
+    MemoryTiming summed_height_table;  ///< of a height test that reads rectangles
+    MemoryTiming height_table;         ///< of any other
     OffChipTiming off_chip_memory;
     StallParameters stalls;
 

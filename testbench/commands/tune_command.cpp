@@ -109,7 +109,7 @@ Searched choose_tests(const TuneOrder& order, TuneRequest& request) {
     Searched searched;
     searched.ranks = by_job ? hardware.height_test == HeightTest::rank : listed("rank");
     std::optional<HeightTest> of_heights;
-    for (std::size_t k = 0; k < height_test_kinds.size(); ++k) {
+    for (std::size_t k = 0; k < datapath::height_tests().size(); ++k) {
         const auto test = static_cast<HeightTest>(k);
         if (host_of(test).threshold() == nullptr || !listed(name_of(test)))
             continue;

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "modules/datapath/vertex.h"
-#include "modules/timing/height_test_kind.h"
+#include "modules/timing/design_choices.h"
 
 namespace tessera {
 

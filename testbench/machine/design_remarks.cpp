@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "modules/memories/line_cache.h"
-#include "modules/timing/height_test_kind.h"
+#include "modules/timing/height_test_timing.h"
 #include "testbench/job/design_preset.h"
 #include "testbench/job/job_keys.h"
 #include "testbench/job/toml_text.h"
@@ -26,10 +26,9 @@ struct SizedTable {
 std::vector<SizedTable> sized_tables(const MachineSetup& setup) {
     const Timing& t = setup.design.timing;
     const datapath::Registers& r = setup.registers;
-    const HeightTestKind& kind = kind_of(r.formats.height_test);
     return {{"displacement_map", t.displacement_map, r.displacement_map},
             {"normal_map", t.normal_map, r.normal_map},
-            {kind.table, t.*kind.table_timing, r.height_table}};
+            {height_table_spec(r.formats).name, height_table_timing(t, r.formats), r.height_table}};
 }
 
 std::string cache_remark(const SizedTable& table) {
@@ -85,16 +84,17 @@ struct Idle {
 };
 
 std::vector<Idle> idle_keys(const Job& job, const MachineSetup& setup) {
-    const HeightTestKind& kind = kind_of(setup.registers.formats.height_test);
+    const datapath::HeightTest height_test = setup.registers.formats.height_test;
     const Design& design = setup.design;
     std::vector<Idle> idle;
     const auto unless = [&](bool used, std::vector<std::string> keys, std::string because) {
         if (!used)
             idle.push_back({std::move(keys), std::move(because)});
     };
-    for (const HeightTestKind& other : height_test_kinds)
-        unless(&other == &kind, {fmt::format("timing.{}_", other.table), fmt::format("timing.{}_", other.unit)},
-               fmt::format("hardware.height_test = \"{}\"", kind.name));
+    unless(functions_of(height_test).rectangles, {"timing.summed_height_table_"},
+           fmt::format("hardware.height_test = \"{}\"", name_of(height_test)));
+    unless(!functions_of(height_test).rectangles, {"timing.height_table_"},
+           fmt::format("hardware.height_test = \"{}\"", name_of(height_test)));
     bool off_chip = design.queue.capacity > 0 && design.queue.overflow == QueueOverflow::spill;
     for (const SizedTable& table : sized_tables(setup)) {
         const bool cached = table.timing.cache.bytes > 0;

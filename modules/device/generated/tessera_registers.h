@@ -124,9 +124,9 @@
 #define TESSERA_FEATURES_FAMILIES (1u << 3)  /* the family design */
 #define TESSERA_FEATURES_BILINEAR (1u << 4)  /* bilinear filter for the maps */
 #define TESSERA_FEATURES_RANK_TEST (1u << 5)  /* a Rank Test in place of the Summed Height Test */
-#define TESSERA_FEATURES_CURVATURE_TEST (1u << 6)  /* a Curvature Test in its place */
+#define TESSERA_FEATURES_CURVATURE_TEST (1u << 6)  /* a Curvature Test in place of the Summed Height Test */
 #define TESSERA_FEATURES_DISTANCES (1u << 7)  /* a view-dependent Rank Test */
-#define TESSERA_FEATURES_MIPMAP_TEST (1u << 12)  /* a Mipmap Test in its place */
+#define TESSERA_FEATURES_MIPMAP_TEST (1u << 12)  /* a Mipmap Test in place of the Summed Height Test */
 
 /* Register `error`. */
 enum tessera_error {

@@ -312,9 +312,9 @@ package tessera_registers;
   localparam int unsigned FEATURES_FAMILIES_BIT = 3;  // the family design
   localparam int unsigned FEATURES_BILINEAR_BIT = 4;  // bilinear filter for the maps
   localparam int unsigned FEATURES_RANK_TEST_BIT = 5;  // a Rank Test in place of the Summed Height Test
-  localparam int unsigned FEATURES_CURVATURE_TEST_BIT = 6;  // a Curvature Test in its place
+  localparam int unsigned FEATURES_CURVATURE_TEST_BIT = 6;  // a Curvature Test in place of the Summed Height Test
   localparam int unsigned FEATURES_DISTANCES_BIT = 7;  // a view-dependent Rank Test
-  localparam int unsigned FEATURES_MIPMAP_TEST_BIT = 12;  // a Mipmap Test in its place
+  localparam int unsigned FEATURES_MIPMAP_TEST_BIT = 12;  // a Mipmap Test in place of the Summed Height Test
 
   // Register error.
   typedef enum logic [3:0] {

@@ -9,10 +9,10 @@ HeightTestUnit::HeightTestUnit(const sc_core::sc_module_name& name, const UnitCo
 
 HeightTestUnit::HeightTestUnit(const sc_core::sc_module_name& name, const UnitContext& context,
                                const datapath::HeightTestFunctions& functions)
-    : Stage(name, context, context.timing().*kind_of(context.registers.formats.height_test).unit_timing, 1,
+    : Stage(name, context, height_test_timing(context.timing(), context.registers.formats), 1,
             height_test_latency(context.design, context.registers.formats)),
-      table(kind_of(context.registers.formats.height_test).table, context.registers.height_table.entry_bytes,
-            context.design.direct_memory),
+      table(functions_of(context.registers.formats.height_test).table().c_str(),
+            context.registers.height_table.entry_bytes, context.design.direct_memory),
       registers_(context.registers),
       functions_(functions) {
     takes_from(context, input);

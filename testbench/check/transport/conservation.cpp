@@ -164,8 +164,8 @@ void add_timed(Equations& list, const MachineSetup& setup, const HostedMachine& 
              bumps(p, vertices) + normal);
     list.add("edges in tex_coord_test = edges", lanes([](const auto& lane) { return items(lane.tex_coord_test); }),
              edges);
-    const HeightTestKind& height_test = kind_of(setup.registers.formats.height_test);
-    list.add("edges in " + std::string(height_test.unit) + " = its edges",
+    const datapath::HeightTestFunctions& height_test = functions_of(setup.registers.formats.height_test);
+    list.add("edges in " + height_test.unit() + " = its edges",
              tests([](const auto& t) { return items(t.height_test); }), summed_height);
     list.add("edges in view_test = edges", lanes([](const auto& lane) { return items(lane.view_test); }), edges);
     if (!families)

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "modules/timing/height_test_kind.h"
+#include "modules/datapath/height_tests.h"
 #include "testbench/job/job_choices.h"
 #include "testbench/job/toml_text.h"
 #include "testbench/setup/height_tests/height_test_host.h"
@@ -47,7 +47,7 @@ std::string height_threshold_text(HeightTest test, const Job::Tests& tests) {
 /// The tests that may be in the Summed Height Test's place, and are decided by one threshold.
 std::vector<HeightTest> other_height_tests() {
     std::vector<HeightTest> tests;
-    for (std::size_t k = 1; k < height_test_kinds.size(); ++k)
+    for (std::size_t k = 1; k < datapath::height_tests().size(); ++k)
         if (const auto test = static_cast<HeightTest>(k); host_of(test).threshold() != nullptr)
             tests.push_back(test);
     return tests;
@@ -85,7 +85,7 @@ std::string tune_text(const TuneRequest& request, const TuneResult& result, cons
         row(request.goal.largest ? "Bound Test" : "Rank Test",
             toml_number(request.goal.largest ? tests.bound_threshold : tests.rank_threshold));
     else
-        row(kind_of(result.job.hardware.height_test).title,
+        row(functions_of(result.job.hardware.height_test).title(),
             height_threshold_text(result.job.hardware.height_test, tests));
     row("View Test", threshold_text(tests.view, tests.view_threshold));
     row("generation limit", tests.generation ? std::to_string(tests.generation_limit) : "off");

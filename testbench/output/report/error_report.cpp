@@ -4,14 +4,14 @@
 
 #include <cmath>
 
-#include "modules/timing/height_test_kind.h"
+#include "modules/datapath/height_tests.h"
 
 namespace tessera {
 
 namespace {
 
 const char* height_test_of(const Job& job) {
-    return kind_of(job.hardware.height_test).title;
+    return functions_of(job.hardware.height_test).title();
 }
 
 /// The job's tests that request splits.

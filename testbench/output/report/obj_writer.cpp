@@ -45,7 +45,7 @@ Grouped group(const EmittedMesh& mesh, const IndexedMesh& indexed) {
 
 void write_obj(const std::filesystem::path& path, const EmittedMesh& mesh, const MeshUnits& units) {
     const IndexedMesh indexed = IndexedMesh::from(mesh);
-    const HeightTestKind& height_test = kind_of(units.formats.height_test);
+    const datapath::HeightTestFunctions& height_test = functions_of(units.formats.height_test);
     const std::array<std::string_view, deciding_tests> test_names = {"base", "normal", height_test.name, "both",
                                                                      "highlight"};
     AtomicFile file(path);
@@ -65,7 +65,7 @@ void write_obj(const std::filesystem::path& path, const EmittedMesh& mesh, const
                     "#   test: which test split the triangle's parent: normal (Normal Test),\n"
                     "#     {} ({}), both,{} or base: it is a base triangle\n"
                     "#   generation: of its youngest vertex, 0 for a base triangle\n"),
-        indexed.vertices.size(), indexed.triangles.size(), height_test.name, height_test.title,
+        indexed.vertices.size(), indexed.triangles.size(), height_test.name, height_test.title(),
         mesh.has_highlight_splits() ? " highlight (Highlight Test alone)," : "");
     const std::vector<EmittedTriangle::Corner>& corners = mesh.triangles.corners();
     for (const std::uint32_t vertex : indexed.vertices) {

@@ -49,7 +49,7 @@ class Record {
 void write_ply(const std::filesystem::path& path, const EmittedMesh& mesh, const MeshUnits& units) {
     const IndexedMesh indexed = IndexedMesh::from(mesh);
     const bool highlight = mesh.has_highlight_splits();
-    const char* const height_test = kind_of(units.formats.height_test).title;
+    const std::string height_test = functions_of(units.formats.height_test).title();
     AtomicFile file(path);
     file.write(
         fmt::format("ply\n"

@@ -251,7 +251,7 @@ std::vector<Figure> collect_statistics(const MachineSetup& setup, const Simulati
     FigureGroup decide(all, "pass_or_tessellate");
     decide.add("passes", counts.passes, "triangle", "triangles that went through the tests");
     decide.add("normal_passes", counts.normal_passes, "triangle", "recirculated once more for screen normals");
-    const char* const height_test = kind_of(setup.registers.formats.height_test).title;
+    const std::string height_test = functions_of(setup.registers.formats.height_test).title();
     decide.add("split_by_normal", decided.split_by_normal, "edge",
                fmt::format("split by the Normal Test, while the {} was false", height_test));
     decide.add("split_by_summed_height", decided.split_by_summed_height, "edge",
@@ -293,7 +293,7 @@ std::vector<Figure> collect_statistics(const MachineSetup& setup, const Simulati
     FigureGroup lighting(all, "lighting");
     lighting.add("triangles", totals.lit, "triangle", "lit and sent to the rasteriser");
 
-    const auto table = [&](const char* name, const datapath::TableLayout& layout, std::uint64_t reads,
+    const auto table = [&](const std::string& name, const datapath::TableLayout& layout, std::uint64_t reads,
                            const std::unique_ptr<TableCache> Pipeline::*cache) {
         memory_figures(all, name, layout, reads, edges);
         if (simulation.pipeline.*cache != nullptr && timed)
@@ -302,8 +302,8 @@ std::vector<Figure> collect_statistics(const MachineSetup& setup, const Simulati
     table("displacement_map", setup.registers.displacement_map, totals.displacement_map_reads,
           &Pipeline::displacement_map_cache);
     table("normal_map", setup.registers.normal_map, totals.normal_map_reads, &Pipeline::normal_map_cache);
-    table(kind_of(setup.registers.formats.height_test).table, setup.registers.height_table, totals.height_table_reads,
-          &Pipeline::height_table_cache);
+    table(functions_of(setup.registers.formats.height_test).table(), setup.registers.height_table,
+          totals.height_table_reads, &Pipeline::height_table_cache);
 
     FigureGroup saturated(all, "saturations");
     for (const SaturationFigure& figure : saturation_figures(setup, totals.saturations))

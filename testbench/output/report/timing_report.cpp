@@ -145,7 +145,7 @@ std::string off_chip_key(const Pipeline& pipeline) {
 /// The key of which twice the value relieves this unit; empty if there is none that surely does.
 std::string relieving_key(const Pipeline& pipeline, const Unit& unit) {
     const auto ports = [](std::string table, std::uint64_t all) {
-        table.erase(std::min(table.find("_cache"), table.find("_for_tests")));
+        table.erase(std::min({table.find("_cache"), table.find("_for_tests"), table.size()}));
         return 2 * all <= most_ports ? "timing." + table + "_ports" : "";
     };
     if (&unit == &pipeline.off_chip_memory)
@@ -155,10 +155,14 @@ std::string relieving_key(const Pipeline& pipeline, const Unit& unit) {
         for (const TableCache* its : pipeline.caches())
             if (its->basename() == cache)
                 return off_chip_key(pipeline);
-        return ports(std::string(unit.basename()) + "_for_tests", memory->slots_per_cycle());
+        return ports(&unit == &pipeline.height_table ? height_table_spec(pipeline.registers().formats).name
+                                                     : std::string(unit.basename()) + "_for_tests",
+                     memory->slots_per_cycle());
     }
     if (dynamic_cast<const TableCache*>(&unit) != nullptr)
-        return ports(unit.basename(), 1);
+        return ports(&unit == pipeline.height_table_cache.get() ? height_table_spec(pipeline.registers().formats).name
+                                                                : unit.basename(),
+                     1);
     const TessellationTests& tests = pipeline.tessellation_tests[0];
     const auto& normal_tests = tests.normal_tests();
     if (tests.family_sequence_tests != nullptr && 2 * normal_tests.size() <= most_normal_tests &&

@@ -27,7 +27,6 @@ TablePlan table_plan(const TableMemory& memory, const MemoryTiming& timing, cons
 Plan plan_of(const tessera::Pipeline& machine, const Rasteriser& rasteriser, const Design& design) {
     const Timing& t = design.timing;
     const datapath::Registers& registers = machine.registers();
-    const HeightTestKind& kind = kind_of(registers.formats.height_test);
     const TessellationTests& tests = machine.tessellation_tests[0];
     const PassOrTessellate& join = *machine.triangle_pass_or_tessellate;
     const auto input = [&](const auto& of) {
@@ -52,8 +51,8 @@ Plan plan_of(const tessera::Pipeline& machine, const Rasteriser& rasteriser, con
         normal_test.latency += t.highlight_test_latency;
     plan.tests = {{input(tests.calculate_new_u.input), pipeline_plan(t.calculate_new_u)},
                   {input(tests.tex_coord_test.input), pipeline_plan(t.tex_coord_test)},
-                  {input(tests.height_test.input),
-                   pipeline_plan(t.*kind.unit_timing, 1, height_test_latency(design, registers.formats))},
+                  {input(tests.height_test.input), pipeline_plan(height_test_timing(t, registers.formats), 1,
+                                                                 height_test_latency(design, registers.formats))},
                   {input(tests.normal_test.input), pipeline_plan(normal_test, 1, t.read_latency(t.normal_map))},
                   {input(tests.view_test.input), pipeline_plan(t.view_test)},
                   input(*tests.view_test.from_transform),
@@ -77,8 +76,9 @@ Plan plan_of(const tessera::Pipeline& machine, const Rasteriser& rasteriser, con
         plan.displacement_map_for_tests = table_plan(*machine.displacement_map_for_tests, t.displacement_map, t.stalls,
                                                      registers.displacement_map, tested);
     plan.normal_map = table_plan(machine.normal_map, t.normal_map, t.stalls, registers.normal_map, bumped);
-    plan.height_table = table_plan(machine.height_table, t.*kind.table_timing, t.stalls, registers.height_table,
-                                   kind.functions->requests * plan.tests.height_test.pipeline.stages + 1);
+    plan.height_table =
+        table_plan(machine.height_table, height_table_timing(t, registers.formats), t.stalls, registers.height_table,
+                   kind.functions->requests * plan.tests.height_test.pipeline.stages + 1);
     return plan;
 }
 

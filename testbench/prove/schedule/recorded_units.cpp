@@ -118,9 +118,8 @@ std::unique_ptr<DisplaceVertex> RecordedUnits::displace_vertex(Name name, const 
 }
 
 std::unique_ptr<HeightTestUnit> RecordedUnits::height_test(Name name, const UnitContext& context) {
-    const HeightTestKind& kind = kind_of(context.registers.formats.height_test);
     const std::vector<BankOfEntry> memories{
-        BankOfEntry(context.timing().*kind.table_timing, context.registers.height_table),
+        BankOfEntry(height_table_timing(context.timing(), context.registers.formats), context.registers.height_table),
         BankOfEntry(context.timing().displacement_map, context.registers.displacement_map)};
     return std::make_unique<Recorded<HeightTestUnit, HeightOperands>>(name, context, of(context.clock),
                                                                       PassRecord::Reader::height_test, memories);

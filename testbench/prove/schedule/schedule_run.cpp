@@ -230,7 +230,7 @@ bool has_schedule(const MachineSetup& setup) {
     const Design& design = setup.design;
     const Timing& timing = design.timing;
     const bool cached = timing.displacement_map.cache.bytes > 0 || timing.normal_map.cache.bytes > 0 ||
-                        (timing.*kind_of(setup.registers.formats.height_test).table_timing).cache.bytes > 0;
+                        height_table_timing(timing, setup.registers.formats).cache.bytes > 0;
     const bool shared = design.tests_units > 1 || (setup.registers.formats.codes &&
                                                    !displacement_map_has_two_sides(design, setup.registers.formats));
     return design.work == Work::triangle && design.test_order == TestOrder::parallel && design.queue.capacity == 0 &&

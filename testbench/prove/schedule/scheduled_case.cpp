@@ -31,7 +31,7 @@ void choose_timing(Random& random, Timing& timing) {
     timing.stalls = {};
     if (random.chance(60))
         timing.stalls = {random.natural(0, 1000000), random.natural(10, 500), random.natural(1, 40)};
-    for (MemoryTiming* memory : {&timing.displacement_map, &timing.curvature_table}) {
+    for (MemoryTiming* memory : {&timing.displacement_map, &timing.height_table}) {
         if (!random.chance(30))
             continue;
         memory->banks = 1u << random.natural(0, 5);

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cstdint>
 
-#include "modules/timing/height_test_kind.h"
+#include "modules/datapath/height_tests.h"
 #include "testbench/common/hash.h"
 #include "testbench/tests/support/job_results.h"
 #include "testbench/tests/support/program_runner.h"
@@ -128,8 +128,8 @@ ProgramEnd run_with_test(const TestFolder& here, const std::string& job, const s
 
 TEST_CASE("every height test closes the head on a cylinder of whole texels, and the teapot") {
     const TestFolder here;
-    for (const HeightTestKind& kind : height_test_kinds) {
-        const std::string test(kind.name);
+    for (const datapath::HeightTestFunctions* const each : datapath::height_tests()) {
+        const std::string test(each->name);
         if (test == "summed_height")
             continue;
         const ProgramEnd head = run_with_test(here, "head", test, {});
@@ -145,8 +145,8 @@ TEST_CASE("every height test closes the head on the paper's cylinder and the tea
     if (cylinder.empty() || teapot.empty())
         return;
     const TestFolder here;
-    for (const HeightTestKind& kind : height_test_kinds) {
-        const std::string test(kind.name);
+    for (const datapath::HeightTestFunctions* const each : datapath::height_tests()) {
+        const std::string test(each->name);
         if (test == "summed_height")
             continue;
         const ProgramEnd head =

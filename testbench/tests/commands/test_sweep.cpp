@@ -242,7 +242,7 @@ TEST_CASE("sweep: an axis along which no figure changes is named, on the page to
     const auto axis = [](const std::string& keys) { return "[[axis]]\n" + keys; };
     const std::string sweep_of = replaced(small, small.substr(small.find("[[axis]]")), ""),
                       ports = axis("key = \"timing.summed_height_table_ports\"\nvalues = [1, 2]\n"),
-                      idle = axis("key = \"timing.rank_table_ports\"\nvalues = [1, 4]\n"),
+                      idle = axis("key = \"timing.height_table_ports\"\nvalues = [1, 4]\n"),
                       pair = axis(
                           "keys = [\"timing.off_chip_latency\", \"timing.off_chip_buffer\"]\n"
                           "values = [[40, 4], [50, 8]]\n"),
@@ -251,7 +251,7 @@ TEST_CASE("sweep: an axis along which no figure changes is named, on the page to
     INFO(end.text());
     REQUIRE(end.exit_code == 0);
     const std::string page = read_all(checkout.root() / "runs/sweeps/small/index.html");
-    for (const char* const name : {"timing.rank_table_ports", "timing.off_chip_latency, timing.off_chip_buffer"}) {
+    for (const char* const name : {"timing.height_table_ports", "timing.off_chip_latency, timing.off_chip_buffer"}) {
         CHECK_THAT(end.err, Contains("axis " + std::string(name) + " changed no figure"));
         CHECK_THAT(page, Contains("axis " + std::string(name) + " changed no figure"));
     }

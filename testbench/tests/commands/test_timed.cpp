@@ -145,8 +145,7 @@ TEST_CASE("timed run: a key without effect in the design is noted, and has none"
         CHECK_THAT(text, Contains("note: " + key + " = " + value + " has no effect: "));
         CHECK(figures == plain);
     };
-    without_effect({}, "timing.rank_table_ports", "2");
-    without_effect({}, "timing.curvature_test_latency", "9");
+    without_effect({}, "timing.height_table_ports", "2");
     without_effect({"hardware.height_test=mipmap"}, "timing.summed_height_table_ports", "2");
     without_effect({}, "timing.normal_map_cache_ways", "8");
     without_effect({}, "timing.summed_height_table_line_bytes", "128");

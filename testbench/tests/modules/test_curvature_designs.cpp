@@ -66,8 +66,8 @@ const CaseTable designs(
          "timing.stalls_seed=5 timing.stalls_per_mille=300 timing.stalls_longest=20"},
         {"cheap tests first, functional", "hardware.test_order=cheap_first mode=functional"},
         {"a slow table behind a cache",
-         "timing.curvature_table_cache_bytes=256 timing.curvature_table_latency=9 timing.curvature_test_latency=7 "
-         "timing.curvature_test_interval=2"},
+         "timing.height_table_cache_bytes=256 timing.height_table_latency=9 timing.height_test_latency=7 "
+         "timing.height_test_interval=2"},
         {"a slow displacement map", "timing.displacement_map_latency=30"},
         {"families", "hardware.work=family"},
         {"the modern design", "hardware.design=modern"},
@@ -95,8 +95,8 @@ const CaseTable mipmap_designs(
          "hardware.tests_units=3 timing.stalls_seed=3 timing.stalls_per_mille=300 timing.stalls_longest=20"},
         {"cheap tests first, final edges, alongside the other tests, a slow table behind a cache",
          "hardware.test_order=cheap_first hardware.final_edges=true tests.normal=true tests.view=true "
-         "timing.mipmap_table_cache_bytes=256 timing.mipmap_table_latency=9 timing.mipmap_test_interval=2"},
-        {"the modern design, four banks", "hardware.design=modern timing.mipmap_table_banks=4"},
+         "timing.height_table_cache_bytes=256 timing.height_table_latency=9 timing.height_test_interval=2"},
+        {"the modern design, four banks", "hardware.design=modern timing.height_table_banks=4"},
         {"three modern machines, fitted heights", "hardware.design=modern hardware.machines=3 map.heights=fitted"},
     },
     [](const Row& row) { check_design(curved(mipmap + row.settings), 100); });

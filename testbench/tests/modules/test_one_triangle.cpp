@@ -54,9 +54,9 @@ std::uint64_t derived_cycles(const Timing& t) {
     const std::uint64_t a = g + 2 + c + t.normal_map.latency;
     const std::uint64_t w = c == 1 ? std::max({g + 5, v, a}) + 1 : std::max({g + 5 + c, v, a});
     const std::uint64_t s = std::max(u + 2 * slots, w);
-    const std::uint64_t joined = std::max({v + 3, std::max(w, a + 2) + t.normal_map.latency + t.normal_test.latency,
-                                           s + slots - 1 + t.summed_height_table.latency + t.summed_height_test.latency,
-                                           std::max(w, v + 2) + l});
+    const std::uint64_t joined = std::max(
+        {v + 3, std::max(w, a + 2) + t.normal_map.latency + t.normal_test.latency,
+         s + slots - 1 + t.summed_height_table.latency + height_test_timing(t, {}).latency, std::max(w, v + 2) + l});
     const std::uint64_t o = t.pass_or_tessellate.latency;
     const std::uint64_t lit = joined + o + t.tessellation.latency + t.triangle_queue.latency + g + 2 + p + d +
                               transform + o + t.lighting.latency;
@@ -228,7 +228,7 @@ TEST_CASE("one triangle, a different latency in every unit") {
         "timing.get_triangle_latency=3 timing.calculate_new_p_latency=5 timing.displacement_map_latency=7 "
         "timing.displace_vertex_latency=11 timing.transform_latency=40 timing.calculate_new_u_latency=2 "
         "timing.normal_map_latency=4 timing.normal_test_latency=13 timing.summed_height_table_latency=9 "
-        "timing.summed_height_test_latency=17 timing.view_test_latency=6 timing.tex_coord_test_latency=3 "
+        "timing.height_test_latency=17 timing.view_test_latency=6 timing.tex_coord_test_latency=3 "
         "timing.pass_or_tessellate_latency=8 timing.tessellation_latency=10 "
         "timing.triangle_queue_latency=12 timing.lighting_latency=14")));
     CHECK(derived_cycles(simulation.setup.design.timing) == 105 + 113 + 1);

@@ -88,8 +88,8 @@ const CaseTable designs(
         {"cheap tests first, buffers for one edge",
          "hardware.test_order=cheap_first timing.edges_in_sequence=1 timing.results_buffer=1"},
         {"a slow table behind a cache",
-         "timing.rank_table_cache_bytes=256 timing.rank_table_latency=9 timing.rank_test_latency=7 "
-         "timing.rank_test_interval=2"},
+         "timing.height_table_cache_bytes=256 timing.height_table_latency=9 timing.height_test_latency=7 "
+         "timing.height_test_interval=2"},
         {"families", "hardware.work=family"},
         {"families, functional, ranks and bounds", "hardware.work=family mode=functional formats.bound_bits=8"},
         {"the modern design", "hardware.design=modern"},

@@ -48,10 +48,10 @@ struct FullSplitRun : TimedRun {
         REQUIRE(pipeline.pass_or_tessellate.counts().finished == finished);
         REQUIRE(pipeline.get_triangle.parts_sent() == parts);
         // No rectangle wraps: four entries each.
-        const HeightTestKind& kind = kind_of(pipeline.registers().formats.height_test);
+        const datapath::HeightTestFunctions& test = functions_of(pipeline.registers().formats.height_test);
         const Decisions::Evaluated& evaluated = decisions.evaluated();
         REQUIRE(pipeline.height_table.transactions() ==
-                kind.functions->requests * (kind.rectangles ? 4 : 1) *
+                test.requests * (test.rectangles ? 4 : 1) *
                     (evaluated.summed_height - evaluated.summed_height_by_codes));
     }
 };

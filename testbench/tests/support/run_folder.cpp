@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <sstream>
 
-#include "modules/timing/height_test_kind.h"
+#include "modules/datapath/height_tests.h"
 #include "testbench/tests/support/program_runner.h"
 
 namespace tessera {
@@ -169,8 +169,9 @@ void require_consistent(const RunFolder& run) {
           Approx(static_cast<double>(edges) / static_cast<double>(finished)));
 
     // Memories: bytes follow from entries, and the ratio from the same edges.
-    const auto in_run = [&](const HeightTestKind& kind) { return run.statistics.contains(kind.table); };
-    const std::string height_table = std::find_if(height_test_kinds.begin(), height_test_kinds.end(), in_run)->table;
+    const std::vector<const datapath::HeightTestFunctions*>& tests = datapath::height_tests();
+    const auto in_run = [&](const auto* test) { return run.statistics.contains(test->table()); };
+    const std::string height_table = (*std::find_if(tests.begin(), tests.end(), in_run))->table();
     for (const std::string& memory : {std::string("displacement_map"), std::string("normal_map"), height_table}) {
         INFO(memory);
         CHECK(run.count(memory, "bytes_read") == run.count(memory, "reads") * run.count(memory, "entry"));

@@ -76,11 +76,9 @@ inline void require_cycles_add_up(const Unit& unit, std::uint64_t cycles) {
 /// The longest interval of a unit; the last item's may extend beyond the run's end.
 inline std::uint64_t longest_interval(const Timing& t) {
     std::uint64_t longest = 1;
-    for (const HeightTestKind& kind : height_test_kinds)
-        longest = std::max<std::uint64_t>(longest, (t.*kind.unit_timing).interval);
-    for (const UnitTiming& unit :
-         {t.get_triangle, t.calculate_new_p, t.displace_vertex, t.transform, t.calculate_new_u, t.tex_coord_test,
-          t.normal_test, t.view_test, t.pass_or_tessellate, t.tessellation, t.triangle_queue, t.lighting})
+    for (const UnitTiming& unit : {t.get_triangle, t.calculate_new_p, t.displace_vertex, t.transform, t.calculate_new_u,
+                                   t.tex_coord_test, t.height_test, t.normal_test, t.view_test, t.pass_or_tessellate,
+                                   t.tessellation, t.triangle_queue, t.lighting})
         longest = std::max<std::uint64_t>(longest, unit.interval);
     return longest;
 }
@@ -108,9 +106,9 @@ inline void require_timed_conservation(const Simulation& simulation, const Hoste
     CHECK(p.tessellation.activity().items_in() == untested + made[1] + made[2] + made[3] + made[4]);
     const Decisions::Evaluated& evaluated = machine.decisions.evaluated();
     const datapath::Registers& registers = simulation.setup.registers;
-    const HeightTestKind& height_test = kind_of(registers.formats.height_test);
-    const std::uint64_t requests = height_test.functions->requests *
-                                   (evaluated.summed_height - evaluated.summed_height_by_codes - evaluated.off_lattice);
+    const datapath::HeightTestFunctions& height_test = functions_of(registers.formats.height_test);
+    const std::uint64_t requests =
+        height_test.requests * (evaluated.summed_height - evaluated.summed_height_by_codes - evaluated.off_lattice);
     if (!height_test.rectangles)
         CHECK(p.height_table_reads() == (registers.tests.summed_height_test ? requests : 0));
     else if (registers.tests.summed_height_test)

@@ -306,7 +306,7 @@ const testing::CaseTable other_tests(
         INFO(right.first_wrong);
         REQUIRE(right.passed());
         REQUIRE(right.parts.size() == (row.name == "Mipmap Test" ? 5 : 6));
-        const std::string table_name(kind_of(run.setup.registers.formats.height_test).table);
+        const std::string table_name = functions_of(run.setup.registers.formats.height_test).table();
         const std::vector<std::string> others = names_of({});
         for (const int by : {1, -1}) {
             for (const std::string& name : names_of(run.setup.registers))

@@ -103,8 +103,8 @@ TEST_CASE("height tests: a Mipmap Test reads the blocks of both ends and of the 
 
 TEST_CASE("height tests: an edge asks for a split if the compared value exceeds the limit") {
     Random random(3);
-    for (std::size_t kind = 0; kind < height_tests.size(); ++kind) {
-        const HeightTestFunctions& test = *height_tests[kind];
+    for (std::size_t kind = 0; kind < height_tests().size(); ++kind) {
+        const HeightTestFunctions& test = *height_tests()[kind];
         Registers r = registers_of(static_cast<HeightTest>(kind));
         CHECK(&functions_of(r.formats.height_test) == &test);
         if (test.compared < 0) {

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 #include <memory>
 #include <string>
@@ -219,9 +221,25 @@ TEST_CASE("per triangle: entries are found by tag, closed in any order, and the 
 
 TEST_CASE("the table of units in modules/README.md is the units' own") {
     std::string rows;
-    for (const UnitSpec& unit : all_units)
-        rows += std::string("| ") + unit.title + " | " + unit.work + " | " + unit.arithmetic + " |\n";
-    expect_section("modules/README.md", "| unit | work | arithmetic |\n| --- | --- | --- |\n", rows,
+    const auto row = [&](const auto&... cells) {
+        ((rows += fmt::format("| {} ", cells)), ...);
+        rows += "|\n";
+    };
+    for (const UnitSpec& unit : all_units) {
+        if (unit.timing == nullptr)
+            row(unit.title, unit.work, unit.arithmetic, "-");
+        else if (unit.name != std::string(height_test_unit))
+            row(unit.title, unit.work, unit.arithmetic, (Timing().*unit.timing).latency);
+        else
+            for (const datapath::HeightTestFunctions* const test : datapath::height_tests())
+                row(test->title(),
+                    (test == datapath::height_tests().front()
+                         ? ""
+                         : fmt::format("replaces it with `height_test = \"{}\"`: ", test->name)) +
+                        test->work,
+                    test->arithmetic, test->latency);
+    }
+    expect_section("modules/README.md", "| unit | work | arithmetic | latency |\n| --- | --- | --- | --- |\n", rows,
                    "TESSERA_WRITE_UNITS", SectionEnd::empty_line);
 }
 

@@ -54,7 +54,7 @@ struct Bench : sc_core::sc_module {
     std::unique_ptr<TableMemory> map, table;
 
     explicit Bench(const Row& row) : sc_module(sc_core::sc_module_name("bench")), registers(registers_of(row)) {
-        design.timing.displacement_map = design.timing.curvature_table = row.memory;
+        design.timing.displacement_map = design.timing.height_table = row.memory;
         design.timing.stalls = row.stalls;
         for (unsigned texel = 0; texel < 21 * 13; ++texel)
             codes.push_back(random.natural(0, 65535));

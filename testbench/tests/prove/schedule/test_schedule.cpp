@@ -35,7 +35,7 @@ const CaseTable designs(
         {"Crater Lake by curvature", "hardware.height_test=curvature tests.normal=false", "crater_lake_24"},
         {"Crater Lake by curvature, a bilinear filter, banks, random stalls",
          "hardware.height_test=curvature tests.curvature_threshold=1 hardware.displacement_filter=bilinear "
-         "timing.displacement_map_banks=4 timing.displacement_map_latency=7 timing.curvature_table_banks=3 "
+         "timing.displacement_map_banks=4 timing.displacement_map_latency=7 timing.height_table_banks=3 "
          "timing.stalls_seed=3 timing.stalls_per_mille=300 timing.stalls_longest=20",
          "crater_lake_24"},
         {"teapot", "", "teapot"},
