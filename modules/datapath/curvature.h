@@ -175,7 +175,7 @@ constexpr std::uint64_t curvature_of_entries(const TexCoord& i, const TexCoord& 
 
 /// CT: the measure is above the threshold.
 constexpr bool curvature_test(std::uint64_t measure, const TestParameters& parameters) {
-    return measure > parameters.curvature_threshold;
+    return measure > parameters.height_threshold();
 }
 
 inline Multiplications curvature_measure_multiplications(const Formats& f) {
@@ -220,10 +220,10 @@ class CurvatureTest : public HeightTestFunctions {
     Multiplications multiplications(const Registers& r) const override {
         return curvature_measure_multiplications(r.formats);
     }
-    std::array<Threshold, 2> thresholds(const Registers& r) const override {
-        return {{{"threshold", 40, r.tests.curvature_threshold}}};
+    std::array<Threshold, 2> thresholds(const Formats& f) const override {
+        return {{{"curvature_threshold", curvature_threshold_bits(f), false, "codes times texels, 3 fraction bits"}}};
     }
-    std::uint64_t limit(std::uint64_t, const TestParameters& tests) const override { return tests.curvature_threshold; }
+    std::uint64_t limit(std::uint64_t, const TestParameters& tests) const override { return tests.height_threshold(); }
 
     void reads(const HeightEdge& edge, const Registers& r, Reads& reads) const override {
         reads.through(curvature_by_codes(edge.t_i, edge.t_j, r.formats) ? 1 : 0);

@@ -85,8 +85,8 @@ constexpr std::uint64_t summed_height_difference(std::uint64_t sum_i, std::uint6
 /// SHT's right operand: the threshold; with `area` the threshold is a height and is multiplied by width * height.
 constexpr std::uint64_t summed_height_limit(const RectangleSize& size, const TestParameters& parameters) {
     return parameters.summed_height_unit == SummedHeightUnit::sum
-               ? parameters.summed_height_threshold
-               : parameters.summed_height_threshold * size.width * size.height;
+               ? parameters.height_threshold()
+               : parameters.height_threshold() * size.width * size.height;
 }
 
 /// SHT (paper 2.3): | S_ij / 2 - (S_i + S_j) / 4 | > threshold. Both sides are multiplied by 4, which is only wiring

@@ -40,11 +40,12 @@ class HeightTestFunctions {
         const char* name = nullptr;
         unsigned bits = 0;
     };
-    /// A register of TestParameters that decides, likewise.
+    /// The register of a threshold, one of TestParameters::height_thresholds.
     struct Threshold {
-        const char* name = nullptr;
-        unsigned bits = 0;
-        std::uint64_t value = 0;
+        const char* name = nullptr;  ///< "rank_threshold": register and job key tests.rank_threshold
+        int bits = 0;                ///< 0: designs of these formats lack the register
+        bool is_signed = false;
+        const char* meaning = nullptr;
     };
 
     virtual ~HeightTestFunctions() = default;
@@ -78,7 +79,7 @@ class HeightTestFunctions {
     /// Of one edge.
     virtual Multiplications multiplications(const Registers&) const { return {}; }
     /// At most two; the others have no name.
-    virtual std::array<Threshold, 2> thresholds(const Registers& registers) const = 0;
+    virtual std::array<Threshold, 2> thresholds(const Formats& formats) const = 0;
     /// What the compared value must exceed. weight: of the edge, whatever the thresholds.
     virtual std::uint64_t limit(std::uint64_t /*weight*/, const TestParameters&) const { return 0; }
     virtual std::uint64_t weight(const HeightDecision&) const { return 1; }

@@ -95,7 +95,7 @@ constexpr int mipmap_threshold_bits(const Formats& formats) {
 
 /// MT: the difference is above the threshold.
 constexpr bool mipmap_test(std::uint64_t difference, const TestParameters& parameters) {
-    return difference > parameters.mipmap_threshold;
+    return difference > parameters.height_threshold();
 }
 
 /// Mipmap Test, in place of the Summed Height Test: does the filtered map at the edge's midpoint deviate from the
@@ -126,10 +126,10 @@ class MipmapTest : public HeightTestFunctions {
         table.columns = static_cast<std::uint32_t>(mipmap_entries(r.map));
         table.rows = 1;
     }
-    std::array<Threshold, 2> thresholds(const Registers& r) const override {
-        return {{{"threshold", 17, r.tests.mipmap_threshold}}};
+    std::array<Threshold, 2> thresholds(const Formats& f) const override {
+        return {{{"mipmap_threshold", mipmap_threshold_bits(f), false, "codes, 1 fraction bit"}}};
     }
-    std::uint64_t limit(std::uint64_t, const TestParameters& tests) const override { return tests.mipmap_threshold; }
+    std::uint64_t limit(std::uint64_t, const TestParameters& tests) const override { return tests.height_threshold(); }
 
     void reads(const HeightEdge& edge, const Registers& r, Reads& reads) const override {
         mipmap_reads(edge.t_i, edge.t_j, edge.t_ij, r, [&](std::uint64_t address) { reads.add(address); });

@@ -44,16 +44,11 @@ struct TestParameters {
     bool view_test = true;
     bool tex_coord_test = true;
     bool generation_test = true;
-    std::uint32_t normal_threshold = 0;  ///< normal's format
-    /// sum: 4 * threshold in codes times texels; area: threshold in codes. Compared with |2 S_ij - S_i - S_j|.
-    std::uint64_t summed_height_threshold = 0;
+    std::uint32_t normal_threshold = 0;               ///< normal's format
+    std::array<std::int64_t, 2> height_thresholds{};  ///< of the height test: HeightTestFunctions::thresholds
     SummedHeightUnit summed_height_unit = SummedHeightUnit::sum;
-    /// Rank Test: of the entry's rank, and of its bound; with Formats::distances that at distance 1 (rank_view.h).
-    std::int32_t rank_threshold = 0, bound_threshold = 0;
-    bool rank_per_pixel = false;            ///< with Formats::distances: errors count per pixel, not per point
-    std::uint64_t curvature_threshold = 0;  ///< Curvature Test: 1/8 codes times texels
-    std::uint32_t mipmap_threshold = 0;     ///< Mipmap Test: 1/2 codes
-    std::uint32_t view_threshold = 0;       ///< screen's format
+    bool rank_per_pixel = false;       ///< with Formats::distances: errors count per pixel, not per point
+    std::uint32_t view_threshold = 0;  ///< screen's format
     std::uint32_t generation_limit = 12;
 
     bool highlight_test = false;  ///< HT: three more dot products and their compares, in designs that have it
@@ -62,6 +57,9 @@ struct TestParameters {
     std::array<std::int32_t, 3> half_vector{};
     std::int64_t highlight_cosine = 0;             ///< N'.H at the highlight's border, twice the normal's fraction bits
     std::uint32_t highlight_normal_threshold = 0;  ///< normal's format
+
+    /// Of a height test that has a single one, which is not negative.
+    constexpr std::uint64_t height_threshold() const { return static_cast<std::uint64_t>(height_thresholds[0]); }
 };
 
 /// P' = P + (S * d + bias) * N. Both in the position's format; d = code / 2^bits.

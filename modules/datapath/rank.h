@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "modules/datapath/intermediate.h"
@@ -60,10 +61,13 @@ constexpr RankEntry rank_entry(std::uint64_t bits, const Formats& formats) {
             field(above, rank_entry_bits(formats) - above)};
 }
 
+/// Of the Rank Test's thresholds in TestParameters::height_thresholds.
+inline constexpr std::size_t rank_number = 0, bound_number = 1;
+
 /// RT: the rank or the bound is above its threshold. A field that a design's entries lack is 0 and never above it.
 constexpr bool rank_test(const RankEntry& entry, const TestParameters& parameters) {
     const std::int64_t rank = entry.rank, bound = entry.bound;
-    return rank > parameters.rank_threshold || bound > parameters.bound_threshold;
+    return rank > parameters.height_thresholds[rank_number] || bound > parameters.height_thresholds[bound_number];
 }
 
 /// The number by which the edges of a triangle are compared.

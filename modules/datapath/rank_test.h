@@ -35,12 +35,14 @@ class RankTest : public HeightTestFunctions {
         table.columns = r.covered.columns;
         table.rows = r.covered.rows;
     }
-    std::array<Threshold, 2> thresholds(const Registers& r) const override {
-        const auto bits_of = [](std::int32_t value, int bits) {
-            return static_cast<std::uint32_t>(value) & ((1u << bits) - 1);
+    std::array<Threshold, 2> thresholds(const Formats& f) const override {
+        const auto of = [&](const char* threshold, int entry_bits, int limit_bits) {
+            return f.distances && entry_bits > 0
+                       ? Threshold{threshold, limit_bits, true, "at distance 1, as a 16-bit entry"}
+                       : Threshold{threshold, entry_bits, false, "an entry's format"};
         };
-        return {{{"rank_threshold", rank_limit_bits, bits_of(r.tests.rank_threshold, rank_limit_bits)},
-                 {"bound_threshold", bound_limit_bits, bits_of(r.tests.bound_threshold, bound_limit_bits)}}};
+        return {{of("rank_threshold", f.rank_bits, rank_limit_bits),
+                 of("bound_threshold", f.bound_bits, bound_limit_bits)}};
     }
     unsigned traced(const Formats& formats) const override { return formats.distances ? 4 : 2; }
 

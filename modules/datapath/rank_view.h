@@ -87,7 +87,8 @@ constexpr bool rank_test_in_view(const RankEntry& entry, const EdgeInView& ends,
                                  const Formats& formats) {
     const auto level = static_cast<std::int64_t>(distance_level(ends.distance));
     const std::int64_t rank = std::int64_t{entry.rank} << (FormatLimits::rank_bits.most - formats.rank_bits);
-    if (rank != 0 && rank > parameters.rank_threshold + (parameters.rank_per_pixel ? level : level >> 1))
+    if (rank != 0 &&
+        rank > parameters.height_thresholds[rank_number] + (parameters.rank_per_pixel ? level : level >> 1))
         return true;
     const std::uint64_t radius = midpoint_radius(entry.radius);
     if (entry.bound == 0 || ends.depth + static_cast<std::int64_t>(radius) < 0)
@@ -96,7 +97,7 @@ constexpr bool rank_test_in_view(const RankEntry& entry, const EdgeInView& ends,
         return true;
     const auto nearest = static_cast<std::int64_t>(distance_level(ends.distance - radius) >> 1);
     const std::int64_t bound = std::int64_t{entry.bound} << (FormatLimits::bound_bits.most - formats.bound_bits);
-    return bound > parameters.bound_threshold + nearest;
+    return bound > parameters.height_thresholds[bound_number] + nearest;
 }
 
 /// RT, view-dependent or not.

@@ -1,11 +1,13 @@
 #pragma once
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <string>
 #include <type_traits>
+#include <utility>
 
-#include "modules/datapath/curvature.h"
 #include "modules/datapath/edge_tests.h"
-#include "modules/datapath/mipmap.h"
+#include "modules/datapath/height_tests.h"
 #include "modules/datapath/parameters.h"
 #include "modules/datapath/transform.h"
 
@@ -18,7 +20,7 @@ enum class RegisterKind : std::uint8_t {
 };
 
 struct Register {
-    const char* name;
+    std::string name;
     RegisterKind kind;
     int bits;
     const char* meaning;
@@ -28,10 +30,11 @@ struct Register {
 /// are references to the members of `r`, which may be assigned unless it is constant. Formats and the size of table
 /// entries are fixed in a design; a table's columns and rows follow from the map's size.
 template <class AnyRegisters, class Visit>
-constexpr void describe_registers(AnyRegisters& r, Visit&& visit) {
+void describe_registers(AnyRegisters& r, Visit&& visit) {
     const Formats f = r.formats;
-    const auto field = [&](const char* name, RegisterKind kind, int bits, const char* meaning, auto&... values) {
-        visit(Register{name, kind, bits, meaning}, values...);
+    const HeightTestFunctions& height_test = functions_of(f.height_test);
+    const auto field = [&](std::string name, RegisterKind kind, int bits, const char* meaning, auto&... values) {
+        visit(Register{std::move(name), kind, bits, meaning}, values...);
     };
     constexpr RegisterKind choice = RegisterKind::choice;
     constexpr RegisterKind number = RegisterKind::unsigned_number, with_sign = RegisterKind::signed_number;
@@ -41,6 +44,13 @@ constexpr void describe_registers(AnyRegisters& r, Visit&& visit) {
     const auto row = [&](const char* name, const char* offset_name, const char* meaning, auto& values) {
         field(name, with_sign, matrix_entry_bits, meaning, values[0], values[1], values[2]);
         field(offset_name, with_sign, matrix_offset_bits, "fourth entry of the row", values[3]);
+    };
+    const auto height_thresholds = [&] {
+        const auto thresholds = height_test.thresholds(f);
+        for (std::size_t k = 0; k < thresholds.size(); ++k)
+            if (const auto& t = thresholds[k]; t.bits > 0)
+                field(std::string("tests.") + t.name, t.is_signed ? with_sign : number, t.bits, t.meaning,
+                      r.tests.height_thresholds[k]);
     };
     const int map_side_bits = f.texture.bits - f.texture.fraction;
 
@@ -62,8 +72,8 @@ constexpr void describe_registers(AnyRegisters& r, Visit&& visit) {
     field("summed_height_table.base", number, 64, "byte address", r.height_table.base);
 
     field("tests.normal_threshold", number, f.normal.bits, "normal's format", r.tests.normal_threshold);
-    field("tests.summed_height_threshold", number, summed_height_threshold_bits,
-          "sum: four times the threshold, in codes; area: in codes", r.tests.summed_height_threshold);
+    if (f.height_test == HeightTest::summed_height)
+        height_thresholds();
     field("tests.view_threshold", number, f.screen.bits + 1, "screen's format", r.tests.view_threshold);
     field("tests.generation_limit", number, f.generation_bits, "generations", r.tests.generation_limit);
     if (f.highlight_tag) {  // a design with a Highlight Test
@@ -95,46 +105,33 @@ constexpr void describe_registers(AnyRegisters& r, Visit&& visit) {
     direction("light.direction", "in view space, normal's format", r.light.direction);
     field("light.ambient", number, 9, "ambient light, in 256ths", r.light.ambient);
 
-    if (f.height_test == HeightTest::rank) {  // last, so that the registers of other designs keep their addresses
-        field("rank_table.columns", number, map_side_bits, "columns of the Rank Table, entries", r.covered.columns);
-        field("rank_table.rows", number, map_side_bits, "rows of the Rank Table, entries", r.covered.rows);
-        const auto threshold = [&](const char* name, int entry_bits, int limit_bits, auto& value) {
-            if (entry_bits > 0 && f.distances)
-                field(name, with_sign, limit_bits, "at distance 1, as a 16-bit entry", value);
-            else if (entry_bits > 0)
-                field(name, number, entry_bits, "an entry's format", value);
-        };
-        threshold("tests.rank_threshold", f.rank_bits, rank_limit_bits, r.tests.rank_threshold);
-        threshold("tests.bound_threshold", f.bound_bits, bound_limit_bits, r.tests.bound_threshold);
-        if (f.distances) {
-            field("tests.rank_per_pixel", choice, 1, "error weighted per point, per pixel", r.tests.rank_per_pixel);
-            auto& eye = r.transform.eye;
-            field("transform.eye", with_sign, eye_bits, "position's format", eye[0], eye[1], eye[2]);
-        }
-    }
-    if (f.height_test == HeightTest::curvature) {
-        field("curvature_table.columns", number, map_side_bits, "columns that the Curvature Table covers, texels",
+    // A further test's registers are last, so that those of other designs keep their addresses.
+    if (height_test.covers_more) {
+        const std::string table = std::string(height_test.name) + "_table";
+        field(table + ".columns", number, map_side_bits, "columns that the height test's table covers, texels",
               r.covered.columns);
-        field("curvature_table.rows", number, map_side_bits, "rows that the Curvature Table covers, texels",
+        field(table + ".rows", number, map_side_bits, "rows that the height test's table covers, texels",
               r.covered.rows);
-        field("tests.curvature_threshold", number, curvature_threshold_bits(f), "codes times texels, 3 fraction bits",
-              r.tests.curvature_threshold);
     }
-    if (f.height_test == HeightTest::mipmap)
-        field("tests.mipmap_threshold", number, mipmap_threshold_bits(f), "codes, 1 fraction bit",
-              r.tests.mipmap_threshold);
+    if (f.height_test != HeightTest::summed_height)
+        height_thresholds();
+    if (f.height_test == HeightTest::rank && f.distances) {
+        field("tests.rank_per_pixel", choice, 1, "error weighted per point, per pixel", r.tests.rank_per_pixel);
+        auto& eye = r.transform.eye;
+        field("transform.eye", with_sign, eye_bits, "position's format", eye[0], eye[1], eye[2]);
+    }
 }
 
 /// Does the same, with the values of a group as a std::array of std::int64_t.
 template <class Visit>
-constexpr void visit_registers(const Registers& registers, Visit&& visit) {
+void visit_registers(const Registers& registers, Visit&& visit) {
     describe_registers(registers, [&](const Register& field, const auto&... values) {
         visit(field, std::array{static_cast<std::int64_t>(values)...});
     });
 }
 
 /// Whether the value fits the register.
-constexpr bool holds(const Register& field, std::int64_t value) {
+inline bool holds(const Register& field, std::int64_t value) {
     const int magnitude_bits = field.kind == RegisterKind::signed_number ? field.bits - 1 : field.bits;
     if (magnitude_bits >= 63)
         return true;

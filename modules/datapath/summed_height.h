@@ -50,8 +50,9 @@ class SummedHeightTest : public HeightTestFunctions {
                                                                     : Multiplications();
     }
 
-    std::array<Threshold, 2> thresholds(const Registers& r) const override {
-        return {{{"threshold", 64, r.tests.summed_height_threshold}}};
+    std::array<Threshold, 2> thresholds(const Formats&) const override {
+        return {{{"summed_height_threshold", summed_height_threshold_bits, false,
+                  "sum: four times the threshold, in codes; area: in codes"}}};
     }
     std::uint64_t limit(std::uint64_t area, const TestParameters& tests) const override {
         return summed_height_limit({static_cast<std::uint32_t>(area), 1}, tests);

@@ -160,8 +160,9 @@ Device::Failure Device::check(const datapath::Registers& machine) const {
     }
     if (machine.triangulation > (ranks ? datapath::Triangulation::greatest_rank : datapath::Triangulation::second))
         return at(DeviceError::bad_value, "triangulation");
-    if (machine.tests.summed_height_threshold >
-        (machine.tests.summed_height_unit == datapath::SummedHeightUnit::sum ? most_height_sum : most_height))
+    if (machine.formats.height_test == datapath::HeightTest::summed_height &&
+        machine.tests.height_threshold() >
+            (machine.tests.summed_height_unit == datapath::SummedHeightUnit::sum ? most_height_sum : most_height))
         return at(DeviceError::bad_value, "tests.summed_height_threshold");
     if (machine.light.ambient > most_ambient)
         return at(DeviceError::bad_value, "light.ambient");

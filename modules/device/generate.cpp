@@ -76,7 +76,7 @@ std::vector<DeviceRegister> documented_registers() {
     registers.formats.distances = true;
     registers.formats.rank_bits = registers.formats.bound_bits = 16;
     std::vector<DeviceRegister> all = register_map({}, {});
-    for (std::size_t kind = 1; kind < datapath::height_tests().size(); ++kind) {  // each has the paper's registers
+    for (std::size_t kind = 1; kind < datapath::height_tests().size(); ++kind) {
         registers.formats.height_test = static_cast<datapath::HeightTest>(kind);
         for (DeviceRegister& made : register_map(registers, {}))
             if (std::none_of(all.begin(), all.end(), [&](const DeviceRegister& r) { return r.name == made.name; }))

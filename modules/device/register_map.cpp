@@ -119,7 +119,10 @@ bool has_register(datapath::HeightTest kind, bool highlight, bool distances, con
 
 /// The test that a register belongs to; empty if every design has the register. kind: that of a design that has it.
 std::string test_of(const std::string& name, datapath::HeightTest kind) {
-    if (has_register(datapath::HeightTest::summed_height, false, false, name))
+    bool in_all = true;
+    for (std::size_t number = 0; number < datapath::height_tests().size(); ++number)
+        in_all = in_all && has_register(static_cast<datapath::HeightTest>(number), false, false, name);
+    if (in_all)
         return "";
     if (!has_register(kind, false, true, name))
         return "Highlight Test";

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "modules/datapath/rank.h"
 #include "testbench/setup/tables/rank_table.h"
 
 namespace tessera {
@@ -28,7 +29,8 @@ BoundFacts facts_of(const SceneSettings& settings, const BaseMesh& mesh, const P
     facts.bound_bits = static_cast<int>(settings.formats.bound_bits);
     if (ranks && facts.bound_bits > 0) {
         facts.in_order = tables.highest_bound_threshold >= bound_threshold(whole_map, formats.bound_bits);
-        facts.generations = tables.highest_generation(formats.distances ? 0 : scene.registers.tests.bound_threshold);
+        facts.generations = tables.highest_generation(
+            formats.distances ? 0 : scene.registers.tests.height_thresholds[datapath::bound_number]);
         facts.least_threshold =
             (scene.map.rounding + bound_error(0, formats.bound_bits)) / static_cast<double>(scene.map.highest_code());
     }

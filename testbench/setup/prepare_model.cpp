@@ -147,9 +147,10 @@ PreparedScene prepare_model(const SceneSettings& settings, const BaseMesh& mesh,
     registers.tests = make_tests(tests, formats,
                                  {focal_length(settings.camera), corner_secant(settings.camera), distance_step(formats),
                                   std::abs(height_per_code), std::sqrt(scene.texel_size[0] * scene.texel_size[1])});
-    if (!formats.distances)
-        registers.tests.bound_threshold = std::min(
-            registers.tests.bound_threshold, static_cast<std::int32_t>(scene.rank_tables.highest_bound_threshold));
+    if (formats.height_test == datapath::HeightTest::rank && !formats.distances) {
+        std::int64_t& bound = registers.tests.height_thresholds[datapath::bound_number];
+        bound = std::min(bound, std::int64_t{scene.rank_tables.highest_bound_threshold});
+    }
     formats.highlight_tag = settings.tests.highlight;
     formats.families = settings.families;
     formats.final_edges = settings.final_edges && !formats.families;

@@ -30,12 +30,7 @@ datapath::TestParameters make_tests(const TestSettings& tests, const datapath::F
     result.normal_threshold =
         to_normal_register("tests.normal_threshold", tests.normal_threshold, tests.normal, formats);
     const bool area = tests.summed_height_unit == datapath::SummedHeightUnit::area;
-    const double highest_code = static_cast<double>(formats.displacement.highest);
     result.summed_height_unit = area ? datapath::SummedHeightUnit::area : datapath::SummedHeightUnit::sum;
-    // sum: compared with |2 S_ij - S_i - S_j|, four times the paper's difference
-    result.summed_height_threshold = to_register(
-        {"tests.summed_height_threshold", tests.summed_height_threshold, tests.summed_height,
-         highest_code * (area ? 1 : 4), area ? std::ldexp(1.0, 18) : std::ldexp(1.0, 50), "formats.displacement_bits"});
     host_of(formats.height_test).set_thresholds(tests, formats, view, result);
     result.view_threshold = static_cast<std::uint32_t>(
         to_register({"tests.view_threshold", tests.view_threshold, tests.view, std::ldexp(1.0, formats.screen.fraction),

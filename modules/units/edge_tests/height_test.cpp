@@ -1,5 +1,8 @@
 #include "modules/units/edge_tests/height_test.h"
 
+#include <cstddef>
+#include <cstdint>
+
 #include "modules/stage/stage_steps.h"
 
 namespace tessera {
@@ -42,9 +45,12 @@ HeightResult HeightTestUnit::process(const HeightOperands& edge, const Entries& 
 
 void HeightTestUnit::trace_signals(Signals& signals) const {
     Stage::trace_signals(signals);
-    for (const auto& threshold : functions_.thresholds(registers_))
-        if (threshold.name != nullptr)
-            signals.value(threshold.name, threshold.bits, threshold.value);
+    const auto thresholds = functions_.thresholds(registers_.formats);
+    for (std::size_t k = 0; k < thresholds.size(); ++k)
+        if (const auto& [name, bits, is_signed, meaning] = thresholds[k]; bits > 0)
+            signals.value(
+                thresholds[1].name == nullptr ? "threshold" : name, static_cast<unsigned>(bits),
+                static_cast<std::uint64_t>(registers_.tests.height_thresholds[k]) & ((std::uint64_t{1} << bits) - 1));
 }
 
 void HeightTestUnit::trace_processed(Signals& signals, const HeightOperands&, const HeightResult&) const {

@@ -106,17 +106,17 @@ std::string registers_text(const datapath::Registers& registers) {
     };
     const auto mode = [](datapath::AddressMode a) { return a == datapath::AddressMode::repeat ? "repeat" : "clamp"; };
     return fmt::format(
-        "  registers: scale {}, bias {}; normal threshold {}, summed height threshold {} ({}), view "
+        "  registers: scale {}, bias {}; normal threshold {}, height test's thresholds {}, {} ({}), view "
         "threshold {}, "
         "generation limit {}; {}row_x {}, row_y {}, row_w {}, exponent {}, near plane {}; triangulation {}\n"
         "  map: {} x {}, {} in u, {} in v\n"
         "  formats (bits.fraction): position {}.{}, normal {}.{}, texture {}.{}, displacement {}, summed "
         "height {}, "
         "screen {}.{}\n",
-        registers.displacement.scale, registers.displacement.bias, t.normal_threshold, t.summed_height_threshold,
-        t.summed_height_unit == datapath::SummedHeightUnit::area ? "area" : "sum, times 4", t.view_threshold,
-        t.generation_limit, highlight, row(m.row_x), row(m.row_y), row(m.row_w), m.exponent, m.near_plane,
-        static_cast<int>(registers.triangulation), registers.map.width, registers.map.height,
+        registers.displacement.scale, registers.displacement.bias, t.normal_threshold, t.height_thresholds[0],
+        t.height_thresholds[1], t.summed_height_unit == datapath::SummedHeightUnit::area ? "area" : "sum, times 4",
+        t.view_threshold, t.generation_limit, highlight, row(m.row_x), row(m.row_y), row(m.row_w), m.exponent,
+        m.near_plane, static_cast<int>(registers.triangulation), registers.map.width, registers.map.height,
         mode(registers.map.address_u), mode(registers.map.address_v), f.position.bits, f.position.fraction,
         f.normal.bits, f.normal.fraction, f.texture.bits, f.texture.fraction, f.displacement.bits, f.summed_height.bits,
         f.screen.bits, f.screen.fraction);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "modules/datapath/rank.h"
 #include "testbench/setup/tables/rank_table.h"
 
 namespace tessera {
@@ -33,8 +34,8 @@ std::vector<RankPoint> rank_curve(MachineSetup& setup, const Job& job, const Tex
         const int bits = bound ? formats.bound_bits : formats.rank_bits;
         if (bits == 0)
             continue;
-        tests.rank_threshold = highest_entry(formats.rank_bits);
-        tests.bound_threshold = highest_entry(formats.bound_bits);
+        tests.height_thresholds[datapath::rank_number] = highest_entry(formats.rank_bits);
+        tests.height_thresholds[datapath::bound_number] = highest_entry(formats.bound_bits);
         TuneGoal goal;
         goal.largest = bound;
         RankSearch search(setup, job, errors, goal);

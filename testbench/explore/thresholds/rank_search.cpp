@@ -7,6 +7,7 @@
 #include <cmath>
 #include <string>
 
+#include "modules/datapath/rank.h"
 #include "testbench/common/error.h"
 #include "testbench/job/job_choices.h"
 #include "testbench/setup/tables/rank_table.h"
@@ -87,8 +88,8 @@ double RankSearch::threshold_of(std::uint32_t threshold) const {
 }
 
 Outcome RankSearch::outcome(std::uint32_t threshold, std::uint64_t limit, bool measured) {
-    datapath::TestParameters& tests = setup_.registers.tests;
-    (goal_.largest ? tests.bound_threshold : tests.rank_threshold) = static_cast<std::int32_t>(threshold);
+    setup_.registers.tests.height_thresholds[goal_.largest ? datapath::bound_number : datapath::rank_number] =
+        threshold;
     Meter meter{measured ? &errors_ : nullptr, 0, {}};
     const std::uint64_t most_edges = 6 * limit + 1;  // each triangle is tested once, then bisected or finished
     Outcome result;

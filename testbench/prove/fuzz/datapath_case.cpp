@@ -79,8 +79,7 @@ TestParameters any_tests(ByteSource& source, const Formats& formats, std::int64_
     tests.summed_height_unit = (off & 32) != 0 ? datapath::SummedHeightUnit::area : datapath::SummedHeightUnit::sum;
     const bool area = tests.summed_height_unit == datapath::SummedHeightUnit::area;
     tests.normal_threshold = source.natural(0, 2 * formats.normal.highest + 1);
-    tests.summed_height_threshold =
-        static_cast<std::uint64_t>(source.integer(0, std::int64_t{1} << (area ? 18 : 50))) >> (source.byte() % 40);
+    tests.height_thresholds[0] = source.integer(0, std::int64_t{1} << (area ? 18 : 50)) >> (source.byte() % 40);
     tests.view_threshold = static_cast<std::uint32_t>(source.integer(0, std::int64_t{1} << formats.screen.bits));
     tests.generation_limit = static_cast<std::uint32_t>(generation_limit);
     const Direction half = any_unit(source, formats);

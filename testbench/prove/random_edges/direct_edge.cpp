@@ -247,7 +247,7 @@ std::uint8_t DirectEdge::tests(const Vertex& i, const Vertex& j, const Vertex& i
             measures.cosine > parameters.highlight_cosine,
         datapath::highlight_bit);
     const bool by_area = parameters.summed_height_unit == datapath::SummedHeightUnit::area;
-    set(parameters.summed_height_test && Wide{measures.summed_height} > Wide{parameters.summed_height_threshold} *
+    set(parameters.summed_height_test && Wide{measures.summed_height} > Wide{parameters.height_threshold()} *
                                                                             (by_area ? measures.rectangle_area : 1),
         datapath::summed_height_bit);
     const int in_front = (i.screen.in_front ? 1 : 0) + (j.screen.in_front ? 1 : 0);

@@ -58,7 +58,7 @@ void Trial::fault(std::uint64_t& count, const std::string& what, const Machine& 
         "displacement {}, summed height {}",
         result_.edges, result_.machines, what, text_of("i", pass.triangle.vertices[0]),
         text_of("j", pass.triangle.vertices[1]), text_of("inserted", inserted), unsigned{pass.edges[0].tests},
-        tests.normal_threshold, tests.summed_height_threshold, tests.view_threshold, tests.highlight_normal_threshold,
+        tests.normal_threshold, tests.height_threshold(), tests.view_threshold, tests.highlight_normal_threshold,
         machine.registers.map.width, machine.registers.map.height, f.position.bits, f.position.fraction, f.normal.bits,
         f.normal.fraction, f.texture.bits, f.texture.fraction, f.screen.bits, f.screen.fraction, f.displacement.bits,
         f.summed_height.bits);
@@ -78,9 +78,9 @@ void Trial::set_thresholds(datapath::TestParameters& tests, const datapath::Form
     tests.normal_threshold = static_cast<std::uint32_t>(threshold(measures.normal, unit, result_.at_limit[0]));
     const bool by_area = tests.summed_height_unit == datapath::SummedHeightUnit::area;
     const auto full = static_cast<std::uint64_t>(formats.displacement.highest);
-    tests.summed_height_threshold =
+    tests.height_thresholds[0] = static_cast<std::int64_t>(
         by_area ? threshold(measures.summed_height / measures.rectangle_area, full, result_.at_limit[1])
-                : threshold(measures.summed_height, full * measures.rectangle_area, result_.at_limit[1]);
+                : threshold(measures.summed_height, full * measures.rectangle_area, result_.at_limit[1]));
     tests.view_threshold = static_cast<std::uint32_t>(std::min<std::uint64_t>(
         threshold(measures.length, std::max<std::uint64_t>(1, measures.length * 2), result_.at_limit[2]), UINT32_MAX));
     tests.highlight_normal_threshold =

@@ -17,7 +17,7 @@ class CurvatureHost : public HeightTestHost {
   public:
     void set_thresholds(const TestSettings& tests, const datapath::Formats& formats, const ViewedScale&,
                         datapath::TestParameters& registers) const override {
-        registers.curvature_threshold = to_register(
+        registers.height_thresholds[0] = to_register(
             {"tests.curvature_threshold", tests.curvature_threshold, tests.summed_height,
              std::ldexp(static_cast<double>(formats.displacement.highest), datapath::curvature_fraction),
              std::ldexp(1.0, datapath::curvature_threshold_bits(formats)) - 1, "formats.displacement_bits"});

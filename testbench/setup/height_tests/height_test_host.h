@@ -22,10 +22,9 @@ class HeightTestHost {
     HeightTestHost(const HeightTestHost&) = delete;
     HeightTestHost& operator=(const HeightTestHost&) = delete;
 
-    /// Besides tests.summed_height_threshold, which every design has. Throws InputError if a threshold is beyond its
-    /// register, or below its step.
+    /// Throws InputError if a threshold is beyond its register, or below its step.
     virtual void set_thresholds(const TestSettings&, const datapath::Formats&, const ViewedScale&,
-                                datapath::TestParameters&) const {}
+                                datapath::TestParameters&) const = 0;
     /// Makes what the table is written from, unless that is the map. base: the base triangles' texture coordinates.
     virtual void make_table(const TestSettings&, const std::vector<TextureTriangle>& /*base*/, PreparedScene&) const {}
     virtual void write_table(const PreparedScene& scene, const TableSink& sink) const = 0;

@@ -17,10 +17,10 @@ class MipmapHost : public HeightTestHost {
     /// Compared with |2 M_ij - M_i - M_j|, twice the height.
     void set_thresholds(const TestSettings& tests, const datapath::Formats& formats, const ViewedScale&,
                         datapath::TestParameters& registers) const override {
-        registers.mipmap_threshold = static_cast<std::uint32_t>(
+        registers.height_thresholds[0] =
             to_register({"tests.mipmap_threshold", tests.mipmap_threshold, tests.summed_height,
                          2 * static_cast<double>(formats.displacement.highest),
-                         std::ldexp(1.0, datapath::mipmap_threshold_bits(formats)) - 1, "formats.displacement_bits"}));
+                         std::ldexp(1.0, datapath::mipmap_threshold_bits(formats)) - 1, "formats.displacement_bits"});
     }
     void make_table(const TestSettings& tests, const std::vector<TextureTriangle>&,
                     PreparedScene& scene) const override {

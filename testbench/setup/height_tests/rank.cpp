@@ -2,10 +2,12 @@
 
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "modules/datapath/rank.h"
 #include "testbench/setup/height_tests/height_test_host.h"
 #include "testbench/setup/height_tests/table_rows.h"
 #include "testbench/setup/view.h"
@@ -58,15 +60,14 @@ class RankHost : public HeightTestHost {
         const double highest_code = static_cast<double>(formats.displacement.highest);
         registers.rank_per_pixel = formats.distances && tests.rank_view == RankView::per_pixel;
         if (formats.rank_bits > 0)
-            registers.rank_threshold =
+            registers.height_thresholds[datapath::rank_number] =
                 formats.distances
-                    ? seen_rank_threshold(tests.rank_threshold, registers.rank_per_pixel, view)
-                    : static_cast<std::int32_t>(rank_threshold(tests.rank_threshold * highest_code, formats.rank_bits));
+                    ? std::int64_t{seen_rank_threshold(tests.rank_threshold, registers.rank_per_pixel, view)}
+                    : rank_threshold(tests.rank_threshold * highest_code, formats.rank_bits);
         if (formats.bound_bits > 0)
-            registers.bound_threshold = formats.distances
-                                            ? seen_bound_threshold(tests.bound_threshold, view)
-                                            : static_cast<std::int32_t>(bound_threshold(
-                                                  tests.bound_threshold * highest_code, formats.bound_bits));
+            registers.height_thresholds[datapath::bound_number] =
+                formats.distances ? std::int64_t{seen_bound_threshold(tests.bound_threshold, view)}
+                                  : bound_threshold(tests.bound_threshold * highest_code, formats.bound_bits);
     }
     void make_table(const TestSettings&, const std::vector<TextureTriangle>& base,
                     PreparedScene& scene) const override {

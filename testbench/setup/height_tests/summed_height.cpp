@@ -1,8 +1,11 @@
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <vector>
 
 #include "testbench/setup/height_tests/height_test_host.h"
 #include "testbench/setup/height_tests/table_rows.h"
+#include "testbench/setup/threshold_register.h"
 
 namespace tessera {
 
@@ -10,6 +13,15 @@ namespace {
 
 class SummedHeightHost : public HeightTestHost {
   public:
+    /// sum: compared with |2 S_ij - S_i - S_j|, four times the paper's difference.
+    void set_thresholds(const TestSettings& tests, const datapath::Formats& formats, const ViewedScale&,
+                        datapath::TestParameters& registers) const override {
+        const bool area = tests.summed_height_unit == datapath::SummedHeightUnit::area;
+        registers.height_thresholds[0] =
+            to_register({"tests.summed_height_threshold", tests.summed_height_threshold, tests.summed_height,
+                         static_cast<double>(formats.displacement.highest) * (area ? 1 : 4),
+                         area ? std::ldexp(1.0, 18) : std::ldexp(1.0, 50), "formats.displacement_bits"});
+    }
     void write_table(const PreparedScene& scene, const TableSink& sink) const override {
         const datapath::TableLayout& layout = scene.registers.height_table;
         const auto mask = static_cast<std::uint64_t>(scene.registers.formats.summed_height.highest);

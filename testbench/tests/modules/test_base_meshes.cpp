@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "modules/datapath/rank.h"
 #include "testbench/input/mesh/built_in.h"
 #include "testbench/machine/resolve_job.h"
 #include "testbench/setup/mesh/smooth_normals.h"
@@ -167,7 +168,8 @@ void check_bound(const CheckedRun& run) {
         tables_test::error_figures(tables_test::vertical_errors(setup.map, triangles, formats.texture.fraction))
             .largest;
     const double bound =
-        bound_error(static_cast<std::uint32_t>(setup.registers.tests.bound_threshold), formats.bound_bits);
+        bound_error(static_cast<std::uint32_t>(setup.registers.tests.height_thresholds[datapath::bound_number]),
+                    formats.bound_bits);
     CHECK(largest <= std::max(bound, setup.rank_tables.least_error) + 1e-6);
 }
 

@@ -28,7 +28,7 @@ MachineSetup with_random_table(MachineSetup setup) {
     std::mt19937_64 random(7);
     for (std::uint64_t& entry : setup.curvature_table.entries)
         entry = random() >> (64 - datapath::curvature_entry_bits);
-    setup.registers.tests.curvature_threshold = 1u << 17;
+    setup.registers.tests.height_thresholds[0] = 1u << 17;
     return setup;
 }
 

@@ -38,13 +38,13 @@ MachineSetup with_random_ranks(MachineSetup setup, unsigned seed) {
         entry = static_cast<std::uint16_t>(random() % (1u << formats.bound_bits));
     for (std::uint8_t& entry : setup.rank_tables.radius)
         entry = static_cast<std::uint8_t>(random() % 200);
-    setup.registers.tests.rank_threshold = (1 << formats.rank_bits) / 3;
-    setup.registers.tests.bound_threshold = (1 << formats.bound_bits) / 2;
+    setup.registers.tests.height_thresholds[datapath::rank_number] = (1 << formats.rank_bits) / 3;
+    setup.registers.tests.height_thresholds[datapath::bound_number] = (1 << formats.bound_bits) / 2;
     if (formats.distances) {  // so that at the mesh's centre the same entries ask for a split
         const auto level = static_cast<std::int32_t>(datapath::distance_level(
             2 * std::uint64_t{datapath::eye_distance({}, setup.registers.transform, formats)}));
-        setup.registers.tests.rank_threshold = 65536 / 3 - level;
-        setup.registers.tests.bound_threshold = 65536 / 2 - level / 2;
+        setup.registers.tests.height_thresholds[datapath::rank_number] = 65536 / 3 - level;
+        setup.registers.tests.height_thresholds[datapath::bound_number] = 65536 / 2 - level / 2;
     }
     return setup;
 }
@@ -155,7 +155,7 @@ TEST_CASE("a Rank Test that is off reads nothing", "[rank]") {
 
 TEST_CASE("a Rank Test whose threshold is the greatest rank splits nothing", "[rank]") {
     MachineSetup setup = ranked("mode=functional");
-    setup.registers.tests.rank_threshold =
+    setup.registers.tests.height_thresholds[datapath::rank_number] =
         *std::max_element(setup.rank_tables.rank.begin(), setup.rank_tables.rank.end());
     const CheckedRun run(setup);
     CHECK(run.counts.edges_split == 0);

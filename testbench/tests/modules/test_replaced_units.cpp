@@ -258,7 +258,7 @@ void expect_same_cycles(NamedMachine& left, NamedMachine& right) {
 
 /// Registers with which the machine's own Summed Height Test decides as the halved one.
 MachineSetup equal_to_halved(MachineSetup setup) {
-    std::uint64_t& threshold = setup.registers.tests.summed_height_threshold;
+    std::int64_t& threshold = setup.registers.tests.height_thresholds[0];
     threshold = 2 * threshold + 1;
     return setup;
 }

@@ -110,7 +110,7 @@ struct Case {
         datapath::TestParameters& tests = registers.tests;
         tests.normal_threshold = random.natural(0, 1u << formats.normal.fraction);
         tests.summed_height_unit = random.coin() ? datapath::SummedHeightUnit::area : datapath::SummedHeightUnit::sum;
-        tests.summed_height_threshold = random.natural(0, setup.map.highest_code());
+        tests.height_thresholds[0] = random.natural(0, setup.map.highest_code());
         tests.view_threshold = random.natural(0, 200u << std::min(formats.screen.fraction, 8));
         tests.generation_limit = random.natural(0, 15);
         registers.triangulation = static_cast<datapath::Triangulation>(random.natural(0, 2));

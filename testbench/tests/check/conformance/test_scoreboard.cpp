@@ -245,7 +245,7 @@ TEST_CASE("broken arithmetic is caught") {
     for (int k = 0; k < 90 * 70; ++k)
         setup.map.codes.push_back(static_cast<std::uint16_t>(random.natural(0, 65535)));
     setup.registers.tests.summed_height_unit = datapath::SummedHeightUnit::area;
-    setup.registers.tests.summed_height_threshold = 4000;
+    setup.registers.tests.height_thresholds[0] = 4000;
     setup.registers.tests.generation_limit = 3;
     Case c(setup, Manner::tame);
     const datapath::Registers& registers = c.setup.registers;
@@ -442,7 +442,7 @@ TEST_CASE("a constant map never splits by height, and conforms") {
     for (const datapath::Formats& formats : many_formats()) {
         MachineSetup setup = Case::make_setup(random, formats, Manner::tame);
         setup.map.codes.assign(setup.map.codes.size(), static_cast<std::uint16_t>(setup.map.highest_code()));
-        setup.registers.tests.summed_height_threshold = 0;
+        setup.registers.tests.height_thresholds[0] = 0;
         Case c(setup, Manner::tame);
         std::vector<datapath::TrianglePass> passes;
         for (int k = 0; k < 200; ++k) {

@@ -43,8 +43,7 @@ MachineSetup mipmap_setup(Random& random, const datapath::Formats& formats) {
 }
 
 void set_threshold(MachineSetup& setup, std::uint64_t threshold) {
-    setup.registers.tests.curvature_threshold = threshold;
-    setup.registers.tests.mipmap_threshold = static_cast<std::uint32_t>(threshold);
+    setup.registers.tests.height_thresholds[0] = static_cast<std::int64_t>(threshold);
 }
 
 std::uint64_t measure(const MachineSetup& setup, const datapath::TexCoord& i, const datapath::TexCoord& j,
@@ -136,7 +135,7 @@ TEST_CASE("a wrong decision of the Curvature Test is caught, one step from the t
         (codes ? by_codes : by_table) += 1;
         const std::uint64_t found = measure(setup, pass, 0);
         for (const std::uint64_t threshold : {found, found == 0 ? found : found - 1}) {
-            setup.registers.tests.curvature_threshold = threshold;
+            set_threshold(setup, threshold);
             const Case c(setup, Manner::tame);
             CHECK(test(check(c, decided(setup, pass, 1)), "SHT").mismatches == 1);
         }

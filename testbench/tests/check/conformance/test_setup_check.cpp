@@ -108,7 +108,7 @@ std::vector<Mistake> register_mistakes() {
     add(
         "tests.normal_threshold", [](auto& r) -> auto& { return r.tests.normal_threshold; });
     add(
-        "tests.summed_height_threshold", [](auto& r) -> auto& { return r.tests.summed_height_threshold; });
+        "tests.summed_height_threshold", [](auto& r) -> auto& { return r.tests.height_thresholds[0]; });
     list.push_back({"tests.summed_height_unit",
                     [](MachineSetup& s) { s.registers.tests.summed_height_unit = datapath::SummedHeightUnit::area; }});
     add(

@@ -7,6 +7,7 @@
 #include <set>
 #include <tuple>
 
+#include "modules/datapath/rank.h"
 #include "testbench/check/surface_error/height_field.h"
 #include "testbench/explore/thresholds/rank_curve.h"
 #include "testbench/explore/thresholds/threshold_level.h"
@@ -305,8 +306,8 @@ TEST_CASE("a Rank Test's threshold is the best of all values of its register") {
         for (std::uint32_t threshold = 0; threshold <= search.highest(); ++threshold) {
             (largest ? job.tests.bound_threshold : job.tests.rank_threshold) = search.threshold_of(threshold);
             const MachineSetup setup = make_setup(job, ground.base, ground.map);
-            const datapath::TestParameters& tests = setup.registers.tests;
-            CHECK((largest ? tests.bound_threshold : tests.rank_threshold) == static_cast<std::int32_t>(threshold));
+            CHECK(setup.registers.tests.height_thresholds[largest ? datapath::bound_number : datapath::rank_number] ==
+                  threshold);
             EmittedMesh mesh;
             BareRecursion(setup).run(mesh);
             mesh.sort();
@@ -334,7 +335,8 @@ TEST_CASE("a Rank Test's threshold is the best of all values of its register") {
             if (largest) {  // the register promises it, by less than an entry's step
                 job.tests.bound_threshold = point.tests.bound_threshold;
                 const MachineSetup setup = make_setup(job, ground.base, ground.map);
-                const auto threshold = static_cast<std::uint32_t>(setup.registers.tests.bound_threshold);
+                const auto threshold =
+                    static_cast<std::uint32_t>(setup.registers.tests.height_thresholds[datapath::bound_number]);
                 const double promised = bound_error(threshold, setup.registers.formats.bound_bits) *
                                         std::abs(setup.height_per_code) / setup.scale;
                 CHECK(promised <= bound);

@@ -45,7 +45,7 @@ inline Machine half_donut_machine(double normal_threshold, double summed_height_
     registers.displacement.scale = 1 << 14;
     registers.tests.view_test = false;
     registers.tests.normal_threshold = static_cast<std::uint32_t>(std::floor(normal_threshold * 16384));
-    registers.tests.summed_height_threshold = static_cast<std::uint64_t>(std::floor(summed_height_threshold * 4));
+    registers.tests.height_thresholds[0] = static_cast<std::int64_t>(std::floor(summed_height_threshold * 4));
     return Machine(registers, std::move(tables));
 }
 

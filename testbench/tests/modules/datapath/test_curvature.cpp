@@ -152,7 +152,7 @@ TEST_CASE("CT: every edge of narrow formats measures and decides alike from both
     const std::uint32_t most = 8u << fraction;
     int wrong = 0, splits = 0;
     TestParameters parameters;
-    parameters.curvature_threshold = 1u << 16;
+    parameters.height_thresholds[0] = 1u << 16;
     for (std::uint32_t iu = 0; iu <= most; ++iu)
         for (std::uint32_t iv = 0; iv <= most; ++iv)
             for (std::uint32_t ju = 0; ju <= most; ++ju)
@@ -167,7 +167,7 @@ TEST_CASE("CT: every edge of narrow formats measures and decides alike from both
 
 TEST_CASE("CT: a measure equal to the threshold does not split") {
     TestParameters parameters;
-    parameters.curvature_threshold = 10;
+    parameters.height_thresholds[0] = 10;
     CHECK_FALSE(curvature_test(10, parameters));
     CHECK(curvature_test(11, parameters));
 }

@@ -79,14 +79,14 @@ TEST_CASE("Summed Height Test: |S_ij / 2 - (S_i + S_j) / 4| above the threshold,
                 for (std::uint64_t threshold = 0; threshold < 80; ++threshold) {
                     // the register holds four times the paper's threshold, which gives it two fraction bits
                     parameters.summed_height_unit = SummedHeightUnit::sum;
-                    parameters.summed_height_threshold = threshold;
+                    parameters.height_thresholds[0] = threshold;
                     if (summed_height_test(i, j, ij, {7, 9}, parameters) !=
                         (value > static_cast<double>(threshold) / 4))
                         FAIL(i << ", " << j << ", " << ij << " against " << threshold);
                 }
                 for (std::uint64_t threshold = 0; threshold < 8; ++threshold) {
                     parameters.summed_height_unit = SummedHeightUnit::area;
-                    parameters.summed_height_threshold = threshold;
+                    parameters.height_thresholds[0] = threshold;
                     for (const RectangleSize& size : {RectangleSize{1, 1}, RectangleSize{3, 1}, RectangleSize{2, 5}})
                         if (summed_height_test(i, j, ij, size, parameters) !=
                             (4 * value > static_cast<double>(threshold * size.width * size.height)))
@@ -100,14 +100,14 @@ TEST_CASE("Summed Height Test: |S_ij / 2 - (S_i + S_j) / 4| above the threshold,
 TEST_CASE("Summed Height Test: the widest sums, areas and thresholds the host can set") {
     TestParameters parameters;
     const std::uint64_t full = (std::uint64_t{1} << 48) - 1;
-    parameters.summed_height_threshold = 2 * full - 1;
+    parameters.height_thresholds[0] = 2 * full - 1;
     CHECK(summed_height_test(0, 0, full, {1, 1}, parameters));
     CHECK(summed_height_test(full, full, 0, {1, 1}, parameters));
-    parameters.summed_height_threshold = 2 * full;
+    parameters.height_thresholds[0] = 2 * full;
     CHECK_FALSE(summed_height_test(0, 0, full, {1, 1}, parameters));
     CHECK_FALSE(summed_height_test(full, full, 0, {1, 1}, parameters));
     parameters.summed_height_unit = SummedHeightUnit::area;
-    parameters.summed_height_threshold = 1 << 18;
+    parameters.height_thresholds[0] = 1 << 18;
     const std::uint64_t limit = std::uint64_t{1} << 42;  // times 4096 x 4096: beyond 32 bits
     CHECK_FALSE(summed_height_test(0, 0, limit / 2, {4096, 4096}, parameters));
     CHECK(summed_height_test(1, 0, limit / 2 + 1, {4096, 4096}, parameters));

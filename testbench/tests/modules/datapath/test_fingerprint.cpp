@@ -50,7 +50,7 @@ TEST_CASE("fingerprint: a hundred thousand random triangles give the recorded bi
     registers.map = {97, 61, AddressMode::repeat, AddressMode::clamp};
     const Tables tables = random_tables(random, registers);
     registers.tests.normal_threshold = 9000;
-    registers.tests.summed_height_threshold = 90000;
+    registers.tests.height_thresholds[0] = 90000;
     registers.tests.view_threshold = 30 << 8;
     registers.displacement = {1 << 15, -9000};
     registers.transform.row_x = {14000000, 300000, -2000000, std::int64_t{1} << 41};

@@ -114,8 +114,7 @@ TEST_CASE("height tests: an edge asks for a split if the compared value exceeds 
         int asked = 0;
         for (int k = 0; k < 2000; ++k) {
             r.tests.summed_height_unit = random.coin() ? SummedHeightUnit::sum : SummedHeightUnit::area;
-            r.tests.summed_height_threshold = r.tests.curvature_threshold = random.natural(0, 100000);
-            r.tests.mipmap_threshold = random.natural(0, 60000);
+            r.tests.height_thresholds[0] = random.natural(0, 80000);
             const TexCoord i{random.natural(0, 40 << 12), random.natural(0, 30 << 12)};
             const HeightEdge edge = edge_of(i, {i.u + random.natural(0, 16 << 12), i.v + random.natural(0, 2 << 12)});
             Entries entries{};
@@ -131,8 +130,7 @@ TEST_CASE("height tests: an edge asks for a split if the compared value exceeds 
             for (const std::uint64_t below : {std::uint64_t{0}, std::uint64_t{1}}) {
                 if (value < below)
                     continue;
-                r.tests.summed_height_threshold = r.tests.curvature_threshold = value - below;
-                r.tests.mipmap_threshold = static_cast<std::uint32_t>(value - below);
+                r.tests.height_thresholds[0] = static_cast<std::int64_t>(value - below);
                 HeightDecision exact;
                 test.decide(edge, entries, r, exact);
                 CHECK(exact.asks == (below == 1));

@@ -148,7 +148,7 @@ TEST_CASE("symmetry: with a Highlight Test, decision and inserted vertex are the
     Tables tables = random_tables(random, registers);
     registers.tests = parameters_of({0, 0, 1 << 14}, 200'000'000, 9000);
     registers.tests.normal_threshold = 30000;
-    registers.tests.summed_height_threshold = ~0U;
+    registers.tests.height_thresholds[0] = ~0U;
     registers.displacement = {1 << 15, -9000};
     Machine machine(registers, std::move(tables));
     int alone = 0, edges = 0;

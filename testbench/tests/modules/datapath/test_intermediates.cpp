@@ -204,7 +204,7 @@ void check_rectangle(const Formats& f, bool tight) {
     limit.see(Wide{1} << 50);
     TestParameters by_area;
     by_area.summed_height_unit = SummedHeightUnit::area;
-    by_area.summed_height_threshold = 1u << 18;
+    by_area.height_thresholds[0] = 1u << 18;
     limit.see(summed_height_limit(largest, by_area));
     check("edge tests", edge.area, area, tight);
     check("edge tests", edge.limit, limit, tight);

@@ -54,9 +54,10 @@ TEST_CASE("mipmap: the threshold is twice the midpoint's deviation from the chor
     for (std::uint64_t i = 0; i < 16; ++i)
         for (std::uint64_t j = 0; j < 16; ++j)
             for (std::uint64_t ij = 0; ij < 16; ++ij)
-                for (tests.mipmap_threshold = 0; tests.mipmap_threshold < 32; ++tests.mipmap_threshold) {
+                for (int threshold = 0; threshold < 32; ++threshold) {
+                    tests.height_thresholds[0] = threshold;
                     const double deviation = std::abs(static_cast<double>(ij) - static_cast<double>(i + j) / 2);
-                    const bool splits = deviation > tests.mipmap_threshold / 2.0;
+                    const bool splits = deviation > threshold / 2.0;
                     REQUIRE(mipmap_test(mipmap_difference(Entries{i, j, ij}), tests) == splits);
                     REQUIRE(mipmap_test(mipmap_difference(Entries{j, i, ij}), tests) == splits);
                 }

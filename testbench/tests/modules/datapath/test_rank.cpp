@@ -60,8 +60,8 @@ TEST_CASE("an entry's rank is in the bits below its bound", "[rank]") {
 
 TEST_CASE("RT: splits above either threshold, not at it", "[rank]") {
     TestParameters parameters;
-    parameters.rank_threshold = 10;
-    parameters.bound_threshold = 20;
+    parameters.height_thresholds[rank_number] = 10;
+    parameters.height_thresholds[bound_number] = 20;
     CHECK_FALSE(rank_test({10, 20}, parameters));
     CHECK(rank_test({11, 0}, parameters));
     CHECK(rank_test({0, 21}, parameters));

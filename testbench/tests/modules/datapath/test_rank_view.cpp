@@ -112,7 +112,7 @@ TEST_CASE("the thresholds rise with distance: per octave a rank's by two or four
     };
     // A rank has 10 fraction bits, a bound 11.
     const std::uint32_t rank = 40 << 10;
-    parameters.rank_threshold = (20 << 10) - 1;
+    parameters.height_thresholds[rank_number] = (20 << 10) - 1;
     CHECK(asks({rank, 0}, 1 << 10, with_distances()));
     CHECK_FALSE(asks({rank - 1, 0}, 1 << 10, with_distances()));
     CHECK(asks({rank - (2 << 10), 0}, 1 << 9, with_distances()));
@@ -124,7 +124,7 @@ TEST_CASE("the thresholds rise with distance: per octave a rank's by two or four
     CHECK_FALSE(asks({rank - 1, 0}, 1 << 5, with_distances()));
 
     const std::uint32_t bound = 20 << 11;
-    parameters.bound_threshold = (10 << 11) - 1;
+    parameters.height_thresholds[bound_number] = (10 << 11) - 1;
     CHECK(asks({0, bound, 0}, (1 << 10) + 8, with_distances()));  // the least radius is 8
     CHECK_FALSE(asks({0, bound - 1, 0}, (1 << 10) + 8, with_distances()));
     CHECK(asks({0, bound - (1 << 11), 8}, (1 << 9) + 16, with_distances()));
@@ -136,13 +136,13 @@ TEST_CASE("the thresholds rise with distance: per octave a rank's by two or four
 TEST_CASE("a sphere around the eye splits, one behind the viewer does not, nor does an entry of 0", "[rank]") {
     const Formats formats = with_distances();
     TestParameters parameters;
-    parameters.bound_threshold = parameters.rank_threshold = 65535;
+    parameters.height_thresholds[bound_number] = parameters.height_thresholds[rank_number] = 65535;
     CHECK(rank_test_in_view({0, 1, 0}, {8, 0}, parameters, formats));
     CHECK_FALSE(rank_test_in_view({0, 1, 0}, {9, 0}, parameters, formats));
     CHECK(rank_test_in_view({0, 1, 0}, {8, -8}, parameters, formats));
     CHECK_FALSE(rank_test_in_view({0, 1, 0}, {8, -9}, parameters, formats));
-    parameters.bound_threshold = -(1 << (bound_limit_bits - 1));
-    parameters.rank_threshold = -(1 << (rank_limit_bits - 1));
+    parameters.height_thresholds[bound_number] = -(1 << (bound_limit_bits - 1));
+    parameters.height_thresholds[rank_number] = -(1 << (rank_limit_bits - 1));
     CHECK_FALSE(rank_test_in_view({0, 0, 0}, {0, 0}, parameters, formats));
     CHECK_FALSE(rank_test_in_view({0, 0, 255}, {0, 0}, parameters, formats));
     const std::uint64_t farthest = std::uint64_t{0xffffffff} * 2;
@@ -166,8 +166,8 @@ TEST_CASE("an edge decides alike from either end, and a thousand random edges gi
         const RankEntry entry{random.natural(0, 65535), random.natural(0, 65535), random.natural(0, 255)};
         TestParameters parameters;
         parameters.rank_per_pixel = random.coin();
-        parameters.rank_threshold = random.integer32(-100000, 60000);
-        parameters.bound_threshold = random.integer32(-60000, 60000);
+        parameters.height_thresholds[rank_number] = random.integer32(-100000, 60000);
+        parameters.height_thresholds[bound_number] = random.integer32(-60000, 60000);
         const Formats formats = with_distances();
         const bool asks = asks_by_rank(entry, edge_in_view(i, j), parameters, formats);
         REQUIRE(asks == asks_by_rank(entry, edge_in_view(j, i), parameters, formats));

@@ -69,7 +69,7 @@ Machine machine_of(std::uint32_t width, std::uint32_t height, AddressMode u, Add
     Registers registers;
     registers.map = {width, height, u, v};
     registers.formats.summed_height = Format::make_unsigned(bits, 0);
-    registers.tests.summed_height_threshold = 0;
+    registers.tests.height_thresholds[0] = 0;
     Tables tables = make_tables(registers, codes, std::vector<Direction>(codes.size()));
     return Machine(registers, std::move(tables));
 }
@@ -280,7 +280,7 @@ TEST_CASE("rectangles: with a threshold per area, each axis has its own address 
                         codes.push_back(along_u ? x * x : y * y);
                 Machine machine = machine_of(width, height, u, v, 32, codes);
                 machine.registers.tests.summed_height_unit = SummedHeightUnit::area;
-                machine.registers.tests.summed_height_threshold = threshold;
+                machine.registers.tests.height_thresholds[0] = threshold;
                 return machine.summed_height({0, 0}, {(along_u ? 8u : 3u) << 12, (along_u ? 3u : 16u) << 12});
             };
             INFO((u == AddressMode::repeat) << (v == AddressMode::repeat));

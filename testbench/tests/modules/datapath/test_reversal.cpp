@@ -96,7 +96,7 @@ TEST_CASE("reversal: every edge of narrow vertices, six tests, decision, inserte
             Tables tables = make_tables(registers, map.codes, map.normals);
             TestParameters& tests = registers.tests;
             tests.normal_threshold = 12;
-            tests.summed_height_threshold = 2;
+            tests.height_thresholds[0] = 2;
             tests.view_threshold = 40;
             tests.generation_limit = 3;
             tests.highlight_test = true;
@@ -178,7 +178,7 @@ TEST_CASE("reversal: Summed Height Test, every edge on maps of 1 to 4 texels a s
                     const std::uint64_t most = measures.summed_height / area;
                     for (const std::uint64_t threshold :
                          {std::uint64_t{0}, most > 0 ? most - 1 : most, most, most + 1}) {
-                        tests.summed_height_threshold = threshold;
+                        tests.height_thresholds[0] = threshold;
                         const bool asks = machine.summed_height(i.texture, j.texture);
                         if (asks != machine.summed_height(j.texture, i.texture) ||
                             asks != (measures.summed_height > threshold * area))

@@ -35,7 +35,7 @@ Machine random_machine(std::uint32_t width, std::uint32_t height, AddressMode u,
     }
     Tables tables = make_tables(registers, codes, normals);
     registers.tests.normal_threshold = 12000;
-    registers.tests.summed_height_threshold = 120000;
+    registers.tests.height_thresholds[0] = 120000;
     registers.tests.view_threshold = 40 << 8;
     registers.tests.generation_limit = 9;
     registers.displacement = {1 << 15, -9000};
@@ -138,7 +138,7 @@ TEST_CASE(
         for (const AddressMode v : both_modes) {
             Machine machine = random_machine(8, 8, u, v, random);
             machine.registers.formats.texture = Format::make_unsigned(6, 2);
-            machine.registers.tests.summed_height_threshold = 60000;
+            machine.registers.tests.height_thresholds[0] = 60000;
             constexpr std::uint32_t side = 33;
             for (std::uint32_t a = 0; a < side * side; ++a) {
                 for (std::uint32_t b = a; b < side * side; ++b) {

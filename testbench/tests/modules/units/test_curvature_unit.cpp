@@ -37,7 +37,7 @@ datapath::Registers registers_of(const Row& row) {
     registers.displacement_map.base = 0x1000;
     registers.height_table.base = 0x2000;
     registers.tests.summed_height_test = row.on;
-    registers.tests.curvature_threshold = 30000;
+    registers.tests.height_thresholds[0] = 30000;
     shape_tables(registers);
     return registers;
 }

@@ -8,6 +8,7 @@
 #include <regex>
 #include <set>
 
+#include "modules/datapath/rank_view.h"
 #include "modules/unit_numbers.h"
 #include "testbench/output/trace/recorder.h"
 #include "testbench/tests/output/trace/vcd_file.h"
@@ -259,7 +260,8 @@ TEST_CASE("waveforms show what the tests in place of the Summed Height Test comp
         for (const auto& [time, value] : vcd[unit + row.shown].changes) {
             const bool splits = row.splits([&, at = time](const char* signal) {
                 const VcdFile::Signal& its = vcd[unit + signal];
-                const unsigned above = std::string(signal) == "rank_threshold" ? 64 - its.bits : 0;  // signed
+                const bool is_signed = its.bits == datapath::rank_limit_bits;  // as the viewer sees it
+                const unsigned above = is_signed ? 64 - its.bits : 0;
                 return static_cast<std::int64_t>(its.at(at) << above) >> above;
             });
             decisions.insert(splits);

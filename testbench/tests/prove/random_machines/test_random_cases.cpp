@@ -40,7 +40,7 @@ TEST_CASE("random case: read from its files it is the same as in memory") {
         INFO("seed " << seed);
         CHECK(job.mode == Mode::functional);
         CHECK(written.map.codes == kept.map.codes);
-        CHECK(written.registers.tests.summed_height_threshold == kept.registers.tests.summed_height_threshold);
+        CHECK(written.registers.tests.height_thresholds == kept.registers.tests.height_thresholds);
         CHECK(written.registers.transform.row_w == kept.registers.transform.row_w);
         REQUIRE(written.base_triangles.size() == kept.base_triangles.size());
         for (std::size_t k = 0; k < kept.base_triangles.size(); ++k)

@@ -279,7 +279,7 @@ TEST_CASE("No grid point in the picture appears farther from the mesh than the b
             make_rank_tables(at.map, at.base, seen, 0, seen.bound_bits, RadiusScale{view.steps, rounding});
         const double pixels = std::exp2(random.real(-3, 7));
         datapath::TestParameters parameters;
-        parameters.bound_threshold =
+        parameters.height_thresholds[datapath::bound_number] =
             seen_bound_threshold(pixels, {view.focal, view.secant(), 1, view.steps.code, view.steps.u});
         const auto mesh = [&] {
             const TexelTable bound = table_of(tables.bound, tables);
