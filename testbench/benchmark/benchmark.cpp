@@ -31,7 +31,7 @@ Job benchmark_job(int map_side) {
     job.mode = Mode::functional;
     job.map.width = job.map.height = map_side;
     job.tests.normal_threshold = 0.02;
-    job.tests.summed_height_threshold = 1;
+    job.tests.threshold("summed_height_threshold") = 1;
     job.tests.view_threshold = 0.5;
     return job;
 }

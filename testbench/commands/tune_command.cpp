@@ -111,7 +111,7 @@ Searched choose_tests(const TuneOrder& order, TuneRequest& request) {
     std::optional<HeightTest> of_heights;
     for (std::size_t k = 0; k < datapath::height_tests().size(); ++k) {
         const auto test = static_cast<HeightTest>(k);
-        if (host_of(test).threshold() == nullptr || !listed(name_of(test)))
+        if (host_of(test).searched() == nullptr || !listed(name_of(test)))
             continue;
         if (of_heights)
             throw InputError(fmt::format("--tests: {} and {} exclude each other; tune with one of them",

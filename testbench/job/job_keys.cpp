@@ -130,17 +130,31 @@ class TableWriter {
         };
     }
 
+    /// A number deep within the group: `member(group)` is a reference to it, or, if the group is const, its value.
+    template <typename Member>
+    void add_double(const char* leaf, Member member, const char* unit, KeyRange range,
+                    const std::string& description) const {
+        add_value<double>(leaf, member, KeyKind::number, unit, range, description);
+    }
+
   private:
     template <typename T>
     void add_plain(const char* leaf, T Group::*member, KeyKind kind, const char* unit, KeyRange range,
                    const std::string& description) const {
+        add_value<T>(
+            leaf, [member](auto& group) -> auto& { return group.*member; }, kind, unit, range, description);
+    }
+
+    template <typename T, typename Member>
+    void add_value(const char* leaf, Member member, KeyKind kind, const char* unit, KeyRange range,
+                   const std::string& description) const {
         Key& key = push(leaf, kind, unit, description);
         key.range = range;
         key.get = [select = select_, member, range](const Job& job) {
-            return value_or_auto(select(job).*member, range);
+            return value_or_auto<T>(member(select(job)), range);
         };
         key.set = [select = select_, member](Job& job, const JobValue& value) {
-            select(job).*member = from_value<T>(value);
+            member(select(job)) = from_value<T>(value);
         };
     }
 

@@ -52,7 +52,8 @@ struct KeyTable {
     std::vector<Key> keys;
 };
 
-/// All keys, each declared once, in job_keys.cpp, testbench/setup/setting_keys.h and modules/timing/design_keys.h.
+/// All keys, each declared once, in job_keys.cpp, testbench/setup/setting_keys.h and height_tests, and
+/// modules/timing/design_keys.h.
 /// Reading, --set, dumping and the key reference are derived from them.
 const std::vector<KeyTable>& job_tables();
 

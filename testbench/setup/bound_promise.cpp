@@ -62,7 +62,7 @@ std::string bound_condition_settings() {
 
 bool asks_for_bound(const SceneSettings& settings) {
     const bool has_table = settings.height_test == datapath::HeightTest::rank && settings.formats.bound_bits > 0;
-    return has_table || settings.tests.bound_threshold != TestSettings{}.bound_threshold;
+    return has_table || settings.tests.threshold("bound_threshold") != TestSettings{}.threshold("bound_threshold");
 }
 
 std::vector<const BoundCondition*> broken_bound_conditions(const SceneSettings& settings, const BaseMesh& mesh,
@@ -86,8 +86,8 @@ void remark_on_bound(const SceneSettings& settings, const BaseMesh& mesh, Prepar
     scene.bound_promised = scene.bound_asked && reasons.empty();
     if (!reasons.empty())
         scene.remarks.push_back(fmt::format("tests.bound_threshold = {} is not guaranteed{}: {}",
-                                            settings.tests.bound_threshold, facts.in_picture ? " in the picture" : "",
-                                            reasons));
+                                            settings.tests.threshold("bound_threshold"),
+                                            facts.in_picture ? " in the picture" : "", reasons));
 }
 
 }  // namespace tessera

@@ -74,9 +74,10 @@ inline constexpr std::array bound_conditions{
     BoundCondition{"formats.bound_bits = 16",
                    "the bounds of midpoints that depend on one another do not fit their entries",
                    [](const BoundFacts& f) { return !f.in_picture || f.in_order; }, "in the picture"},
-    BoundCondition{"tests.bound_threshold above the rounding of heights to codes (formats.displacement_bits)",
-                   "the threshold is below the rounding of heights to codes",
-                   [](const BoundFacts& f) { return f.in_picture || f.tests.bound_threshold >= f.least_threshold; }},
+    BoundCondition{
+        "tests.bound_threshold above the rounding of heights to codes (formats.displacement_bits)",
+        "the threshold is below the rounding of heights to codes",
+        [](const BoundFacts& f) { return f.in_picture || f.tests.threshold("bound_threshold") >= f.least_threshold; }},
 };
 
 /// The setting, and where it matters.

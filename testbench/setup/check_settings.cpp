@@ -123,6 +123,11 @@ class RangeCheck {
              const std::string& /*description*/) const {
         check(name, group_.*member, range);
     }
+    template <typename Member>
+    void add_double(const char* name, Member member, const char* /*unit*/, const KeyRange& range,
+                    const std::string& /*description*/) const {
+        check(name, member(group_), range);
+    }
     void add(const char* name, Vector Group::*member, const char* /*unit*/, const KeyRange& range,
              const char* /*description*/) const {
         const Vector& value = group_.*member;

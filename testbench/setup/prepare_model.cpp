@@ -143,7 +143,8 @@ PreparedScene prepare_model(const SceneSettings& settings, const BaseMesh& mesh,
     const double height_per_code = displacement.range * model_scale.scale / scene.map.highest_code();
     TestSettings tests = settings.tests;
     if (!formats.distances)  // the rounding of heights to codes is part of the bound
-        tests.bound_threshold = std::max(0.0, tests.bound_threshold - scene.map.rounding / scene.map.highest_code());
+        tests.threshold("bound_threshold") =
+            std::max(0.0, tests.threshold("bound_threshold") - scene.map.rounding / scene.map.highest_code());
     registers.tests = make_tests(tests, formats,
                                  {focal_length(settings.camera), corner_secant(settings.camera), distance_step(formats),
                                   std::abs(height_per_code), std::sqrt(scene.texel_size[0] * scene.texel_size[1])});

@@ -3,8 +3,10 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <string_view>
 
 #include "modules/datapath/parameters.h"
+#include "testbench/setup/height_thresholds.h"
 
 namespace tessera {
 
@@ -56,14 +58,10 @@ struct TestSettings {
     bool normal = true;
     double normal_threshold = 0.12;  ///< difference of one component of two unit normals
     bool summed_height = true;
-    double summed_height_threshold = 0.03;  ///< full-scale texels (sum) or full scale (area)
+    HeightThresholds thresholds;  ///< of summed_height, or the test that replaces it
     datapath::SummedHeightUnit summed_height_unit = datapath::SummedHeightUnit::sum;
     RankView rank_view = RankView::none;
-    double rank_threshold = 0.05;      ///< full scale times the square root of a texel; as seen: seen_rank_threshold
-    double bound_threshold = 0.01;     ///< full scale; as seen: pixels
-    double curvature_threshold = 0.1;  ///< full scale times texels
     MipmapFilter mipmap_filter = MipmapFilter::mean;
-    double mipmap_threshold = 0.02;  ///< full scale
     bool view = true;
     double view_threshold = 5;  ///< pixels, Manhattan
     bool tex_coord = true;
@@ -72,6 +70,10 @@ struct TestSettings {
     bool highlight = false;
     double highlight_angle = 25;               ///< degrees from the half vector
     double highlight_normal_threshold = 0.05;  ///< difference of one component of two unit normals
+
+    /// One of `thresholds`, by its key: threshold("summed_height_threshold").
+    double& threshold(std::string_view key) { return thresholds[key]; }
+    double threshold(std::string_view key) const { return thresholds[key]; }
 };
 
 /// Fixed-point formats; bits include the sign, if any.

@@ -1,6 +1,6 @@
 #pragma once
 #include "modules/datapath/format.h"
-#include "testbench/setup/bound_promise.h"
+#include "testbench/setup/height_tests/height_test_host.h"
 #include "testbench/setup/key_range.h"
 #include "testbench/setup/scene_settings.h"
 
@@ -8,6 +8,7 @@
 //
 //   key.add(name, member, description)                a flag or a choice
 //   key.add(name, member, unit, range, description)   a number, or a vector: the range of its components
+//   key.add_double(name, member, ...)                 likewise; member(settings) is a reference to the number
 
 namespace tessera {
 
@@ -34,14 +35,12 @@ void declare_tests_keys(const Keys& key) {
     key.add("normal", &TestSettings::normal, "Normal Test; off: never requests a split");
     key.add("normal_threshold", &TestSettings::normal_threshold, "unit normal component", between(0, 2), "Normal Test: an edge requests a split if a component of two of its normals differs by more");
     key.add("summed_height", &TestSettings::summed_height, "Summed Height Test, or its replacement (hardware.height_test); off: never requests a split");
-    key.add("summed_height_threshold", &TestSettings::summed_height_threshold, "full-scale texels (sum), full scale (area)", between(0, 1e9), "Summed Height Test: an edge requests a split if S_ij / 2 and (S_i + S_j) / 4 differ by more (sum), or if 2 S_ij and S_i + S_j differ by more than the threshold times the rectangle's area (area)");
+    for (const HeightTestHost* host : height_test_hosts())
+        for (const HeightThresholdKey& it : host->thresholds())
+            key.add_double(it.name, [name = it.name](auto& tests) -> decltype(auto) { return tests.threshold(name); }, it.unit, it.range, it.meaning);
     key.add("summed_height_unit", &TestSettings::summed_height_unit, "Quantity that the threshold is compared with: sums over rectangles, or the second difference of their mean heights (area)");
     key.add("rank_view", &TestSettings::rank_view, "With hardware.height_test = \"rank\": the error that its thresholds measure. none: on the surface; per_point, per_pixel: in the picture, in pixels, so that triangles are smaller nearer to camera.eye, with each point of the map, or each pixel, weighted equally. The latter two need hardware.test_order = \"cheap_first\"");
-    key.add("rank_threshold", &TestSettings::rank_threshold, "full scale times the root of a texel; pixels times the root of a texel (per_point), of a pixel (per_pixel)", between(0, 1e9), "With hardware.height_test = \"rank\" and formats.rank_bits: an edge requests a split if the square root of the squared error that its midpoint removes, per added triangle, is larger");
-    key.add("bound_threshold", &TestSettings::bound_threshold, "full scale; pixels (per_point, per_pixel)", between(0, 1e6), "With hardware.height_test = \"rank\" and formats.bound_bits: largest distance of a point of the map from the mesh, along the normal, or as it appears in the picture. Heights are the map's, before rounding; positions are rounded besides. Asked for if the Rank Table has bounds, or this key has another value than its default; a run then measures it at every texel's centre, and says that it holds, or what to set. It holds with: " + bound_condition_settings());
-    key.add("curvature_threshold", &TestSettings::curvature_threshold, "full scale times texels", between(0, 1e9), "With hardware.height_test = \"curvature\": an edge requests a split if the map deviates from its chord by more than the threshold divided by the edge's length in texels, rounded up to a power of two");
     key.add("mipmap_filter", &TestSettings::mipmap_filter, "With hardware.height_test = \"mipmap\": height of a block of texels, their mean or their maximum");
-    key.add("mipmap_threshold", &TestSettings::mipmap_threshold, "full scale", between(0, 1), "With hardware.height_test = \"mipmap\": an edge requests a split if the filtered height at its midpoint deviates by more from the mean of those at its ends");
     key.add("view", &TestSettings::view, "View Test; off: allows every split");
     key.add("view_threshold", &TestSettings::view_threshold, "pixels", between(0, 1e6), "View Test: only an edge that is longer on the screen (Manhattan length) may be split");
     key.add("tex_coord", &TestSettings::tex_coord, "Tex Coord Test: stops at the map's resolution; off: allows every split");

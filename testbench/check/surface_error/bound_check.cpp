@@ -126,7 +126,7 @@ std::optional<BoundResult> check_bound(const Job& job, const BaseMesh& base, con
     BoundResult result;
     result.promised = setup.bound_promised;
     result.in_picture = job.tests.rank_view != RankView::none;
-    result.threshold = job.tests.bound_threshold;
+    result.threshold = job.tests.threshold("bound_threshold");
     result.deviation = meter.deviation(error);
     result.points = result.in_picture ? error.seen : error.covered;
     result.worst_texel = error.worst_texel;

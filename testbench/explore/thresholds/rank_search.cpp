@@ -111,8 +111,8 @@ bool RankSearch::met(const Outcome& outcome) {
 void RankSearch::take(std::uint32_t threshold, const Outcome& outcome) {
     ThresholdSearch::Candidate candidate;
     candidate.point.tests = job_.tests;
-    (goal_.largest ? candidate.point.tests.bound_threshold : candidate.point.tests.rank_threshold) =
-        threshold_of(threshold);
+    (goal_.largest ? candidate.point.tests.threshold("bound_threshold")
+                   : candidate.point.tests.threshold("rank_threshold")) = threshold_of(threshold);
     candidate.point.triangulation = Triangulation::greatest_rank;
     candidate.point.outcome = outcome;
     found_.tried.push_back(candidate);

@@ -44,7 +44,7 @@ ThresholdSearch::ThresholdSearch(RefinementForest& forest, const MachineSetup& s
       space_(space),
       on_progress_(std::move(on_progress)),
       height_test_(job.hardware.height_test),
-      height_threshold_(host_of(height_test_).threshold()) {}
+      height_threshold_(host_of(height_test_).searched()) {}
 
 // A threshold below its register's first step becomes 0; one above all possible values lets nothing pass.
 
@@ -84,7 +84,7 @@ Job::Tests ThresholdSearch::tests_at(const Shape& shape, const Place& place) con
     if (shape.ratio == normal_alone)
         tests.summed_height = false;
     else if (space_.summed_height)
-        tests.*height_threshold_ = threshold(place.summed_height, summed_height_levels(shape.unit));
+        tests.threshold(height_threshold_) = threshold(place.summed_height, summed_height_levels(shape.unit));
     if (shape.ratio == summed_height_alone)
         tests.normal = false;
     else if (space_.normal)
@@ -103,7 +103,7 @@ datapath::TestParameters ThresholdSearch::finest() const {
     if (space_.normal)
         tests.normal_threshold = 0;
     if (space_.summed_height)
-        tests.*height_threshold_ = 0;
+        tests.threshold(height_threshold_) = 0;
     if (space_.view)
         tests.view_threshold = 0;
     return registers_of(tests);

@@ -145,7 +145,7 @@ class ThresholdSearch {
     const TuneSpace& space_;
     std::function<void(double)> on_progress_;
     HeightTest height_test_;
-    double Job::Tests::*height_threshold_;
+    const char* height_threshold_;  // a key, or null
     Found found_;
     std::set<Key> done_;
     std::map<Key, std::optional<int>> alone_;

@@ -38,7 +38,7 @@ std::string threshold_text(bool on, double threshold) {
 }
 
 std::string height_threshold_text(HeightTest test, const Job::Tests& tests) {
-    const std::string threshold = threshold_text(tests.summed_height, tests.*host_of(test).threshold());
+    const std::string threshold = threshold_text(tests.summed_height, tests.threshold(host_of(test).searched()));
     return test == HeightTest::summed_height && tests.summed_height
                ? fmt::format("{}, {}", threshold, name_of(tests.summed_height_unit))
                : threshold;
@@ -48,7 +48,7 @@ std::string height_threshold_text(HeightTest test, const Job::Tests& tests) {
 std::vector<HeightTest> other_height_tests() {
     std::vector<HeightTest> tests;
     for (std::size_t k = 1; k < datapath::height_tests().size(); ++k)
-        if (const auto test = static_cast<HeightTest>(k); host_of(test).threshold() != nullptr)
+        if (const auto test = static_cast<HeightTest>(k); host_of(test).searched() != nullptr)
             tests.push_back(test);
     return tests;
 }
@@ -83,7 +83,7 @@ std::string tune_text(const TuneRequest& request, const TuneResult& result, cons
     row("Normal Test", threshold_text(result.job.tests.normal, tests.normal_threshold));
     if (request.bases[result.base].ranks)
         row(request.goal.largest ? "Bound Test" : "Rank Test",
-            toml_number(request.goal.largest ? tests.bound_threshold : tests.rank_threshold));
+            toml_number(request.goal.largest ? tests.threshold("bound_threshold") : tests.threshold("rank_threshold")));
     else
         row(functions_of(result.job.hardware.height_test).title(),
             height_threshold_text(result.job.hardware.height_test, tests));
@@ -120,12 +120,12 @@ std::string tune_json(const TuneRequest& request, const TuneResult& result, cons
     found = {{"normal", tests.normal},
              {"normal_threshold", tests.normal_threshold},
              {"summed_height", tests.summed_height},
-             {"summed_height_threshold", tests.summed_height_threshold},
+             {"summed_height_threshold", tests.threshold("summed_height_threshold")},
              {"summed_height_unit", name_of(tests.summed_height_unit)}};
     for (const HeightTest test : other_height_tests())
-        found[fmt::format("{}_threshold", name_of(test))] = tests.*host_of(test).threshold();
-    found.update({{"rank_threshold", tests.rank_threshold},
-                  {"bound_threshold", tests.bound_threshold},
+        found[host_of(test).searched()] = tests.threshold(host_of(test).searched());
+    found.update({{"rank_threshold", tests.threshold("rank_threshold")},
+                  {"bound_threshold", tests.threshold("bound_threshold")},
                   {"view", tests.view},
                   {"view_threshold", tests.view_threshold},
                   {"tex_coord", tests.tex_coord},
@@ -151,7 +151,7 @@ std::string tried_csv(const TuneRequest& request, const TuneResult& result, cons
         "base,height_test,normal_threshold,summed_height_threshold,summed_height_unit,view_threshold,generation_limit,"
         "triangulation,";
     for (const HeightTest test : others)
-        text += fmt::format("{}_threshold,", name_of(test));
+        text += fmt::format("{},", host_of(test).searched());
     text += fmt::format("rank_threshold,bound_threshold,triangles,rms [{0}],max [{0}]\n", unit.name());
     for (const TriedPoint& tried : result.tried) {
         const Job::Tests& tests = tried.point.tests;
@@ -163,15 +163,15 @@ std::string tried_csv(const TuneRequest& request, const TuneResult& result, cons
         };
         text += fmt::format("\"{}\",{},{},{},{},{},{},{},", base.name(), name_of(kind),
                             threshold_text(tests.normal, tests.normal_threshold),
-                            of(HeightTest::summed_height, tests.summed_height_threshold),
+                            of(HeightTest::summed_height, tests.threshold("summed_height_threshold")),
                             name_of(tests.summed_height_unit), threshold_text(tests.view, tests.view_threshold),
                             tests.generation_limit, name_of(tried.point.triangulation));
         for (const HeightTest test : others)
-            text += of(test, tests.*host_of(test).threshold()) + ",";
-        text +=
-            fmt::format("{},{},{},{:.6g},{:.6g}\n", of(HeightTest::rank, tests.rank_threshold, !request.goal.largest),
-                        of(HeightTest::rank, tests.bound_threshold, request.goal.largest), outcome.triangles,
-                        outcome.rms / unit.model_units, outcome.max / unit.model_units);
+            text += of(test, tests.threshold(host_of(test).searched())) + ",";
+        text += fmt::format("{},{},{},{:.6g},{:.6g}\n",
+                            of(HeightTest::rank, tests.threshold("rank_threshold"), !request.goal.largest),
+                            of(HeightTest::rank, tests.threshold("bound_threshold"), request.goal.largest),
+                            outcome.triangles, outcome.rms / unit.model_units, outcome.max / unit.model_units);
     }
     return text;
 }

@@ -77,7 +77,7 @@ ExactModel::ExactModel(const Job& job, const BaseMesh& original, const HeightMap
     parameters_.bias = displacement.of(map.range_low) * model_scale_.scale;
     const Job::Tests& tests = job.tests;
     parameters_.normal_threshold = tests.normal_threshold;
-    parameters_.summed_height_threshold = tests.summed_height_threshold * highest;
+    parameters_.summed_height_threshold = tests.threshold("summed_height_threshold") * highest;
     parameters_.view_threshold = tests.view_threshold;
     parameters_.highlight_cosine = std::cos(tests.highlight_angle * pi / 180);
     parameters_.highlight_normal_threshold = tests.highlight_normal_threshold;

@@ -68,23 +68,23 @@ void coarsen(Random& random, Job::Tests& tests) {
     }
     tests.normal_threshold = std::min(2.0, 2 * tests.normal_threshold + 0.005);
     tests.highlight_normal_threshold = std::min(2.0, 2 * tests.highlight_normal_threshold + 0.005);
-    tests.rank_threshold = 2 * tests.rank_threshold + 0.005;
-    tests.curvature_threshold = 2 * tests.curvature_threshold + 0.05;
-    tests.mipmap_threshold = std::min(1.0, 2 * tests.mipmap_threshold + 0.005);
-    tests.bound_threshold = std::min(1e6, 2 * tests.bound_threshold + 0.005);
+    tests.threshold("rank_threshold") = 2 * tests.threshold("rank_threshold") + 0.005;
+    tests.threshold("curvature_threshold") = 2 * tests.threshold("curvature_threshold") + 0.05;
+    tests.threshold("mipmap_threshold") = std::min(1.0, 2 * tests.threshold("mipmap_threshold") + 0.005);
+    tests.threshold("bound_threshold") = std::min(1e6, 2 * tests.threshold("bound_threshold") + 0.005);
     const bool area = tests.summed_height_unit == SummedHeightUnit::area;
-    tests.summed_height_threshold =
-        std::min(area ? 2.0 : 4096.0, 2 * tests.summed_height_threshold + (area ? 0.001 : 0.05));
+    tests.threshold("summed_height_threshold") =
+        std::min(area ? 2.0 : 4096.0, 2 * tests.threshold("summed_height_threshold") + (area ? 0.001 : 0.05));
 }
 
 /// Changes the tests so that the mesh has somewhat more triangles.
 void refine(Random& random, const Job::Formats& formats, Job::Tests& tests) {
     tests.normal_threshold /= 4;
-    tests.summed_height_threshold /= 4;
-    tests.rank_threshold /= 4;
-    tests.curvature_threshold /= 4;
-    tests.mipmap_threshold /= 4;
-    tests.bound_threshold /= 4;
+    tests.threshold("summed_height_threshold") /= 4;
+    tests.threshold("rank_threshold") /= 4;
+    tests.threshold("curvature_threshold") /= 4;
+    tests.threshold("mipmap_threshold") /= 4;
+    tests.threshold("bound_threshold") /= 4;
     if (random.coin())
         tests.view_threshold /= 4;
     else

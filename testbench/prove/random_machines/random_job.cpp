@@ -42,9 +42,9 @@ void choose_tests(Random& random, const Job::Formats& formats, Job::Tests& tests
     tests.highlight = random.chance(25);
     tests.normal_threshold = random.one_of({0.0, 0.001, 0.02, 0.05, 0.12, 0.12, 0.3, 0.7, 2.0});
     tests.summed_height_unit = random.coin() ? SummedHeightUnit::sum : SummedHeightUnit::area;
-    tests.summed_height_threshold = tests.summed_height_unit == SummedHeightUnit::sum
-                                        ? random.one_of({0.0, 0.01, 0.1, 0.5, 2.0, 2.0, 30.0})
-                                        : random.one_of({0.0, 0.001, 0.01, 0.1, 0.5});
+    tests.threshold("summed_height_threshold") = tests.summed_height_unit == SummedHeightUnit::sum
+                                                     ? random.one_of({0.0, 0.01, 0.1, 0.5, 2.0, 2.0, 30.0})
+                                                     : random.one_of({0.0, 0.001, 0.01, 0.1, 0.5});
     const double most = std::ldexp(1.0, static_cast<int>(formats.screen_bits - formats.screen_fraction));
     tests.view_threshold = std::min(most, random.one_of({0.0, 0.5, 1.0, 4.0, 4.0, 13.3, 40.0, 200.0}));
     tests.generation_limit =
@@ -127,13 +127,13 @@ void choose_mesh_options(Random& random, Job& job) {
         return;
     if (random.chance(40)) {
         job.hardware.height_test = HeightTest::curvature;
-        job.tests.curvature_threshold = random.one_of({0.0, 0.02, 0.3, 3.0});
+        job.tests.threshold("curvature_threshold") = random.one_of({0.0, 0.02, 0.3, 3.0});
         return;
     }
     if (random.chance(30)) {
         job.hardware.height_test = HeightTest::mipmap;
         job.tests.mipmap_filter = random.one_of({MipmapFilter::mean, MipmapFilter::maximum});
-        job.tests.mipmap_threshold = random.one_of({0.0, 0.002, 0.05});
+        job.tests.threshold("mipmap_threshold") = random.one_of({0.0, 0.002, 0.05});
         return;
     }
     job.hardware.height_test = HeightTest::rank;
@@ -141,13 +141,13 @@ void choose_mesh_options(Random& random, Job& job) {
         job.hardware.triangulation = Triangulation::greatest_rank;
     job.formats.rank_bits = random.one_of<std::int64_t>({0, 6, 8, 11, 16});
     job.formats.bound_bits = job.formats.rank_bits == 0 ? 8 : random.one_of<std::int64_t>({0, 0, 6, 13});
-    job.tests.rank_threshold = random.one_of({0.002, 0.02, 0.2});
-    job.tests.bound_threshold = random.one_of({0.002, 0.02, 0.2});
+    job.tests.threshold("rank_threshold") = random.one_of({0.002, 0.02, 0.2});
+    job.tests.threshold("bound_threshold") = random.one_of({0.002, 0.02, 0.2});
     job.tests.rank_view = random.one_of({RankView::none, RankView::per_point, RankView::per_pixel});
     if (job.tests.rank_view != RankView::none) {
         job.hardware.test_order = TestOrder::cheap_first;
-        job.tests.rank_threshold = random.one_of({0.5, 10.0, 1000.0});
-        job.tests.bound_threshold = random.one_of({0.5, 4.0, 30.0});
+        job.tests.threshold("rank_threshold") = random.one_of({0.5, 10.0, 1000.0});
+        job.tests.threshold("bound_threshold") = random.one_of({0.5, 4.0, 30.0});
     }
 }
 

@@ -15,10 +15,16 @@ namespace {
 
 class CurvatureHost : public HeightTestHost {
   public:
+    const std::vector<HeightThresholdKey>& thresholds() const override {
+        static const std::vector<HeightThresholdKey> keys{
+            {"curvature_threshold", 0.1, "full scale times texels", between(0, 1e9),
+             "With hardware.height_test = \"curvature\": an edge requests a split if the map deviates from its chord by more than the threshold divided by the edge's length in texels, rounded up to a power of two"}};
+        return keys;
+    }
     void set_thresholds(const TestSettings& tests, const datapath::Formats& formats, const ViewedScale&,
                         datapath::TestParameters& registers) const override {
         registers.height_thresholds[0] = to_register(
-            {"tests.curvature_threshold", tests.curvature_threshold, tests.summed_height,
+            {"tests.curvature_threshold", tests.threshold("curvature_threshold"), tests.summed_height,
              std::ldexp(static_cast<double>(formats.displacement.highest), datapath::curvature_fraction),
              std::ldexp(1.0, datapath::curvature_threshold_bits(formats)) - 1, "formats.displacement_bits"});
     }
@@ -31,7 +37,7 @@ class CurvatureHost : public HeightTestHost {
                    [&](std::uint32_t x, std::uint32_t) { return scene.curvature_table.entries[x]; });
     }
 
-    double TestSettings::*threshold() const override { return &TestSettings::curvature_threshold; }
+    const char* searched() const override { return "curvature_threshold"; }
     Range range(const PreparedScene& scene, datapath::SummedHeightUnit) const override {
         const datapath::CoveredTexels& covered = scene.registers.covered;
         return {1 / static_cast<double>(scene.map.highest_code()) / 8, 2.0 * std::max(covered.columns, covered.rows)};

@@ -1,7 +1,9 @@
 #pragma once
+#include <string>
 #include <vector>
 
 #include "modules/datapath/parameters.h"
+#include "testbench/setup/key_range.h"
 #include "testbench/setup/prepared_scene.h"
 #include "testbench/setup/scene_settings.h"
 #include "testbench/setup/tables/grid_points.h"
@@ -9,7 +11,16 @@
 
 namespace tessera {
 
-/// The host's part of a height test: the registers of its thresholds, and its table.
+/// Declaration of a threshold, a key of `[tests]` in a job.
+struct HeightThresholdKey {
+    const char* name;
+    double value;  ///< default
+    const char* unit;
+    KeyRange range;
+    std::string meaning;
+};
+
+/// The host's part of a height test: its thresholds with their registers, and its table.
 class HeightTestHost {
   public:
     /// Thresholds worth trying, in the key's unit: the register's first step, and one above which hardly an edge splits.
@@ -22,6 +33,8 @@ class HeightTestHost {
     HeightTestHost(const HeightTestHost&) = delete;
     HeightTestHost& operator=(const HeightTestHost&) = delete;
 
+    /// In the order of the key reference.
+    virtual const std::vector<HeightThresholdKey>& thresholds() const = 0;
     /// Throws InputError if a threshold is beyond its register, or below its step.
     virtual void set_thresholds(const TestSettings&, const datapath::Formats&, const ViewedScale&,
                                 datapath::TestParameters&) const = 0;
@@ -29,8 +42,8 @@ class HeightTestHost {
     virtual void make_table(const TestSettings&, const std::vector<TextureTriangle>& /*base*/, PreparedScene&) const {}
     virtual void write_table(const PreparedScene& scene, const TableSink& sink) const = 0;
 
-    /// The key that `tessera tune` searches; null: the test is not decided by one threshold.
-    virtual double TestSettings::*threshold() const { return nullptr; }
+    /// The one of thresholds() that `tessera tune` searches; null: the test is not decided by one threshold.
+    virtual const char* searched() const { return nullptr; }
     virtual Range range(const PreparedScene&, datapath::SummedHeightUnit) const { return {}; }
 };
 
@@ -39,6 +52,9 @@ const HeightTestHost& summed_height_host();
 const HeightTestHost& rank_host();
 const HeightTestHost& curvature_host();
 const HeightTestHost& mipmap_host();
+
+/// In the order of datapath::HeightTest.
+const std::vector<const HeightTestHost*>& height_test_hosts();
 
 const HeightTestHost& host_of(datapath::HeightTest test);
 

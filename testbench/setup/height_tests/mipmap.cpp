@@ -14,11 +14,17 @@ namespace {
 
 class MipmapHost : public HeightTestHost {
   public:
+    const std::vector<HeightThresholdKey>& thresholds() const override {
+        static const std::vector<HeightThresholdKey> keys{
+            {"mipmap_threshold", 0.02, "full scale", between(0, 1),
+             "With hardware.height_test = \"mipmap\": an edge requests a split if the filtered height at its midpoint deviates by more from the mean of those at its ends"}};
+        return keys;
+    }
     /// Compared with |2 M_ij - M_i - M_j|, twice the height.
     void set_thresholds(const TestSettings& tests, const datapath::Formats& formats, const ViewedScale&,
                         datapath::TestParameters& registers) const override {
         registers.height_thresholds[0] =
-            to_register({"tests.mipmap_threshold", tests.mipmap_threshold, tests.summed_height,
+            to_register({"tests.mipmap_threshold", tests.threshold("mipmap_threshold"), tests.summed_height,
                          2 * static_cast<double>(formats.displacement.highest),
                          std::ldexp(1.0, datapath::mipmap_threshold_bits(formats)) - 1, "formats.displacement_bits"});
     }
@@ -31,7 +37,7 @@ class MipmapHost : public HeightTestHost {
                    [&](std::uint32_t x, std::uint32_t) { return std::uint64_t{scene.mipmap_table.entries[x]}; });
     }
 
-    double TestSettings::*threshold() const override { return &TestSettings::mipmap_threshold; }
+    const char* searched() const override { return "mipmap_threshold"; }
     Range range(const PreparedScene& scene, datapath::SummedHeightUnit) const override {
         return {1 / static_cast<double>(scene.map.highest_code()) / 2, 1};
     }

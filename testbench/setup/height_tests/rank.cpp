@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "modules/datapath/rank.h"
+#include "testbench/setup/bound_promise.h"
 #include "testbench/setup/height_tests/height_test_host.h"
 #include "testbench/setup/height_tests/table_rows.h"
 #include "testbench/setup/view.h"
@@ -55,6 +56,17 @@ void remark_on_base(const std::vector<TextureTriangle>& base, PreparedScene& sce
 
 class RankHost : public HeightTestHost {
   public:
+    const std::vector<HeightThresholdKey>& thresholds() const override {
+        static const std::vector<HeightThresholdKey> keys{
+            {"rank_threshold", 0.05,
+             "full scale times the root of a texel; pixels times the root of a texel (per_point), of a pixel (per_pixel)",
+             between(0, 1e9),
+             "With hardware.height_test = \"rank\" and formats.rank_bits: an edge requests a split if the square root of the squared error that its midpoint removes, per added triangle, is larger"},
+            {"bound_threshold", 0.01, "full scale; pixels (per_point, per_pixel)", between(0, 1e6),
+             "With hardware.height_test = \"rank\" and formats.bound_bits: largest distance of a point of the map from the mesh, along the normal, or as it appears in the picture. Heights are the map's, before rounding; positions are rounded besides. Asked for if the Rank Table has bounds, or this key has another value than its default; a run then measures it at every texel's centre, and says that it holds, or what to set. It holds with: " +
+                 bound_condition_settings()}};
+        return keys;
+    }
     void set_thresholds(const TestSettings& tests, const datapath::Formats& formats, const ViewedScale& view,
                         datapath::TestParameters& registers) const override {
         const double highest_code = static_cast<double>(formats.displacement.highest);
@@ -62,12 +74,12 @@ class RankHost : public HeightTestHost {
         if (formats.rank_bits > 0)
             registers.height_thresholds[datapath::rank_number] =
                 formats.distances
-                    ? std::int64_t{seen_rank_threshold(tests.rank_threshold, registers.rank_per_pixel, view)}
-                    : rank_threshold(tests.rank_threshold * highest_code, formats.rank_bits);
+                    ? std::int64_t{seen_rank_threshold(tests.threshold("rank_threshold"), registers.rank_per_pixel, view)}
+                    : rank_threshold(tests.threshold("rank_threshold") * highest_code, formats.rank_bits);
         if (formats.bound_bits > 0)
             registers.height_thresholds[datapath::bound_number] =
-                formats.distances ? std::int64_t{seen_bound_threshold(tests.bound_threshold, view)}
-                                  : bound_threshold(tests.bound_threshold * highest_code, formats.bound_bits);
+                formats.distances ? std::int64_t{seen_bound_threshold(tests.threshold("bound_threshold"), view)}
+                                  : bound_threshold(tests.threshold("bound_threshold") * highest_code, formats.bound_bits);
     }
     void make_table(const TestSettings&, const std::vector<TextureTriangle>& base,
                     PreparedScene& scene) const override {

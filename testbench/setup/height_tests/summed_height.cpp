@@ -13,12 +13,18 @@ namespace {
 
 class SummedHeightHost : public HeightTestHost {
   public:
+    const std::vector<HeightThresholdKey>& thresholds() const override {
+        static const std::vector<HeightThresholdKey> keys{
+            {"summed_height_threshold", 0.03, "full-scale texels (sum), full scale (area)", between(0, 1e9),
+             "Summed Height Test: an edge requests a split if S_ij / 2 and (S_i + S_j) / 4 differ by more (sum), or if 2 S_ij and S_i + S_j differ by more than the threshold times the rectangle's area (area)"}};
+        return keys;
+    }
     /// sum: compared with |2 S_ij - S_i - S_j|, four times the paper's difference.
     void set_thresholds(const TestSettings& tests, const datapath::Formats& formats, const ViewedScale&,
                         datapath::TestParameters& registers) const override {
         const bool area = tests.summed_height_unit == datapath::SummedHeightUnit::area;
         registers.height_thresholds[0] =
-            to_register({"tests.summed_height_threshold", tests.summed_height_threshold, tests.summed_height,
+            to_register({"tests.summed_height_threshold", tests.threshold("summed_height_threshold"), tests.summed_height,
                          static_cast<double>(formats.displacement.highest) * (area ? 1 : 4),
                          area ? std::ldexp(1.0, 18) : std::ldexp(1.0, 50), "formats.displacement_bits"});
     }
@@ -37,7 +43,7 @@ class SummedHeightHost : public HeightTestHost {
         });
     }
 
-    double TestSettings::*threshold() const override { return &TestSettings::summed_height_threshold; }
+    const char* searched() const override { return "summed_height_threshold"; }
     Range range(const PreparedScene& scene, datapath::SummedHeightUnit unit) const override {
         const auto highest_code = static_cast<double>(scene.map.highest_code());
         if (unit == datapath::SummedHeightUnit::area)

@@ -173,7 +173,7 @@ TEST_CASE("formats: random formats on small random jobs stay within the bounds a
         job.camera.viewport_height = random.integer(1, 1024);
         job.displacement.scale = std::ldexp(1.0, static_cast<int>(random.integer(-8, 1)));
         job.tests.generation_limit = 4;
-        job.tests.summed_height_threshold = 2;  // more than a step of the coarsest displacement
+        job.tests.threshold("summed_height_threshold") = 2;  // more than a step of the coarsest displacement
         job.tests.highlight = random.coin();
         INFO("case " << k);
         try {

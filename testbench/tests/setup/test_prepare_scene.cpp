@@ -79,8 +79,13 @@ class BeyondRanges {
     }
     template <typename... Rest>
     void add(const char* name, double Group::*member, const char*, const KeyRange& range, Rest...) const {
+        add_double(
+            name, [member](Group & group) -> auto& { return group.*member; }, "", range);
+    }
+    template <typename Member, typename... Rest>
+    void add_double(const char* name, Member member, const char*, const KeyRange& range, Rest...) const {
         for (const double value : {range.low - 0.01 - std::abs(range.low), range.high + 0.01 + range.high})
-            refused(name, [&](Group& group) { group.*member = value; });
+            refused(name, [&](Group& group) { member(group) = value; });
     }
     template <typename... Rest>
     void add(const char* name, std::array<double, 3> Group::*member, const char*, const KeyRange& range,

@@ -31,7 +31,7 @@ inline Job full_split_job(int side, int limit) {
     job.mesh.columns = job.mesh.rows = side;
     job.map.source = MapSource::noise;
     job.tests.normal_threshold = 0;
-    job.tests.summed_height_threshold = 0;
+    job.tests.threshold("summed_height_threshold") = 0;
     job.tests.view_threshold = 0;
     job.tests.generation_limit = limit;
     return job;

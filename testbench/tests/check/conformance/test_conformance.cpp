@@ -73,7 +73,7 @@ Job crater_lake(std::int64_t columns, std::int64_t rows) {
     job.mesh.depth = 2 * 459 / 336.0;
     job.displacement.scale = 65535 / 30.0 / 168;
     job.displacement.bias = -1533 / 30.0 / 168;
-    job.tests.summed_height_threshold *= 2478 / 65535.0;
+    job.tests.threshold("summed_height_threshold") *= 2478 / 65535.0;
     return job;
 }
 
@@ -107,7 +107,7 @@ TEST_CASE("sphere with repeated map and narrow normals") {
     job.formats.normal_bits = 12;
     job.formats.normal_fraction = 10;
     job.tests.summed_height_unit = SummedHeightUnit::area;
-    job.tests.summed_height_threshold = 0.05;
+    job.tests.threshold("summed_height_threshold") = 0.05;
     expect_conformance(job, half_donut_map(128, 128));
 }
 

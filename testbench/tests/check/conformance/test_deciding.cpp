@@ -23,7 +23,7 @@ Job one_quad() {
     job.map.source = MapSource::noise;
     job.map.width = job.map.height = 64;
     job.tests.normal_threshold = 0;
-    job.tests.summed_height_threshold = 0;
+    job.tests.threshold("summed_height_threshold") = 0;
     job.tests.view = false;
     job.tests.generation_limit = 1;
     return job;

@@ -412,7 +412,7 @@ TEST_CASE("the setup of a job with other formats, a bias, a Highlight Test and a
     job.camera.eye = {0, -9, 2};
     job.tests.highlight = true;
     job.tests.summed_height_unit = SummedHeightUnit::area;
-    job.tests.summed_height_threshold = 0.1;
+    job.tests.threshold("summed_height_threshold") = 0.1;
     job.tests.generation_limit = 2;
     job.formats.position_bits = 24;
     job.formats.position_fraction = 10;

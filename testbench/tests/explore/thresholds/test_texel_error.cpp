@@ -63,7 +63,7 @@ double crater_lake_rms(const glm::dvec2& first, std::int64_t tex_coord_fraction)
     job.formats.tex_coord_fraction = tex_coord_fraction;
     job.tests.view = false;
     job.tests.normal_threshold = 0;
-    job.tests.summed_height_threshold = 0;
+    job.tests.threshold("summed_height_threshold") = 0;
     const HeightMap map = load_map(job);
     const BaseMesh mesh = plane_from(first, map, job.mesh);
     job = resolve_job(job, mesh, map).job;

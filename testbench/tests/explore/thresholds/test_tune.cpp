@@ -122,7 +122,7 @@ TunedPoint brute_force(const Job& job, const TuneGoal& goal) {
             if (trial.tests.normal)
                 trial.tests.normal_threshold = threshold_at(normal);
             if (trial.tests.summed_height)
-                trial.tests.summed_height_threshold = threshold_at(sum);
+                trial.tests.threshold("summed_height_threshold") = threshold_at(sum);
             if (trial.tests.normal || trial.tests.summed_height)
                 attempt(trial);
         }
@@ -167,7 +167,7 @@ TEST_CASE("the forest's mesh is the datapath's for any thresholds") {
             tests.view = round % 2 == 0;
             tests.normal_threshold = between(0.01, 1);
             tests.summed_height_unit = round % 3 == 0 ? SummedHeightUnit::area : SummedHeightUnit::sum;
-            tests.summed_height_threshold =
+            tests.threshold("summed_height_threshold") =
                 tests.summed_height_unit == SummedHeightUnit::area ? between(0.002, 0.5) : between(0.02, 10);
             tests.view_threshold = between(1, 200);
             tests.generation_limit = 1 + round % 9;
@@ -216,9 +216,9 @@ TEST_CASE("no budget is exceeded, and no dense grid of thresholds is better") {
             INFO("budget " << budget << ", largest " << largest << ": " << point.outcome.triangles << " triangles "
                            << request.goal.error_of(point.outcome) << ", brute force " << brute.outcome.triangles
                            << " triangles " << request.goal.error_of(brute.outcome) << " at "
-                           << brute.tests.normal_threshold << " " << brute.tests.summed_height_threshold << " against "
-                           << point.tests.normal << point.tests.normal_threshold << " "
-                           << point.tests.summed_height_threshold);
+                           << brute.tests.normal_threshold << " " << brute.tests.threshold("summed_height_threshold")
+                           << " against " << point.tests.normal << point.tests.normal_threshold << " "
+                           << point.tests.threshold("summed_height_threshold"));
             CHECK(point.outcome.triangles <= budget);
             CHECK(request.goal.error_of(point.outcome) <= 1.03 * request.goal.error_of(brute.outcome));
         }
@@ -231,18 +231,21 @@ TEST_CASE("tuned thresholds keep a distance from every edge's own value") {
             request.space.summed_height = both;
             request.job.tests.summed_height = both;
             request.goal.triangles = budget;
-            const TuneResult result = tuned(request);
+            TuneResult result = tuned(request);
             const Outcome& outcome = result.point.outcome;
             Ground ground(result.job);
             INFO("budget " << budget << ", both " << both);
-            for (double Job::Tests::*threshold : {&Job::Tests::normal_threshold, &Job::Tests::summed_height_threshold})
-                if (result.job.tests.*threshold > 0) {
-                    const int level = level_of(result.job.tests.*threshold);
+            const auto searched = [](Job::Tests& tests, bool normal) -> double& {
+                return normal ? tests.normal_threshold : tests.threshold("summed_height_threshold");
+            };
+            for (const bool normal : {true, false})
+                if (const double threshold = searched(result.job.tests, normal); threshold > 0) {
+                    const int level = level_of(threshold);
                     // the number of levels on one side that give the same mesh
                     const auto room = [&](int direction) {
                         int steps = 0;
                         for (Job job = result.job; steps < 8; ++steps) {
-                            job.tests.*threshold = threshold_at(level + direction * (steps + 1));
+                            searched(job.tests, normal) = threshold_at(level + direction * (steps + 1));
                             const Outcome moved = ground.measure(job);
                             if (moved.triangles != outcome.triangles || moved.rms != outcome.rms)
                                 break;
@@ -284,7 +287,7 @@ TEST_CASE("a View Test in the search is used, also alone") {
     CHECK(all.point.outcome.rms <= fixed.point.outcome.rms);
     request.space.view = true;
     request.space.normal = request.space.summed_height = request.space.generation_limit = false;
-    request.job.tests.normal_threshold = request.job.tests.summed_height_threshold = 0.05;
+    request.job.tests.normal_threshold = request.job.tests.threshold("summed_height_threshold") = 0.05;
     const TuneResult alone = tuned(request);
     CHECK(alone.point.tests.normal_threshold == request.job.tests.normal_threshold);
     CHECK(alone.point.tests.view_threshold > 0);
@@ -304,7 +307,8 @@ TEST_CASE("a Rank Test's threshold is the best of all values of its register") {
         RankSearch search(ground.setup, ground.job, ground.errors, request.goal);
         std::vector<Outcome> all;
         for (std::uint32_t threshold = 0; threshold <= search.highest(); ++threshold) {
-            (largest ? job.tests.bound_threshold : job.tests.rank_threshold) = search.threshold_of(threshold);
+            (largest ? job.tests.threshold("bound_threshold") : job.tests.threshold("rank_threshold")) =
+                search.threshold_of(threshold);
             const MachineSetup setup = make_setup(job, ground.base, ground.map);
             CHECK(setup.registers.tests.height_thresholds[largest ? datapath::bound_number : datapath::rank_number] ==
                   threshold);
@@ -333,7 +337,7 @@ TEST_CASE("a Rank Test's threshold is the best of all values of its register") {
             INFO("error of at most " << bound << ", largest " << largest);
             CHECK(request.goal.error_of(point.outcome) <= bound);
             if (largest) {  // the register promises it, by less than an entry's step
-                job.tests.bound_threshold = point.tests.bound_threshold;
+                job.tests.threshold("bound_threshold") = point.tests.threshold("bound_threshold");
                 const MachineSetup setup = make_setup(job, ground.base, ground.map);
                 const auto threshold =
                     static_cast<std::uint32_t>(setup.registers.tests.height_thresholds[datapath::bound_number]);
@@ -363,7 +367,8 @@ TEST_CASE("a Curvature or a Mipmap Test's threshold is tuned, alone and beside t
         const TuneResult result = tuned(request);
         CHECK(result.point.outcome.triangles <= 300);
         CHECK(result.point.outcome.triangles >= 150);
-        CHECK(result.point.tests.summed_height_threshold == request.job.tests.summed_height_threshold);
+        CHECK(result.point.tests.threshold("summed_height_threshold") ==
+              request.job.tests.threshold("summed_height_threshold"));
         Ground ground(result.job);
         EmittedMesh mesh;
         BareRecursion(ground.setup).run(mesh);
@@ -373,8 +378,8 @@ TEST_CASE("a Curvature or a Mipmap Test's threshold is tuned, alone and beside t
         // No threshold of a dense grid does better.
         for (int level = -14 * levels_per_octave; level <= 2 * levels_per_octave; level += levels_per_octave / 16) {
             Job job = result.job;
-            job.tests.curvature_threshold = threshold_at(level);
-            job.tests.mipmap_threshold = std::min(1.0, threshold_at(level));
+            job.tests.threshold("curvature_threshold") = threshold_at(level);
+            job.tests.threshold("mipmap_threshold") = std::min(1.0, threshold_at(level));
             const Outcome outcome = ground.measure(job);
             if (outcome.triangles <= 300)
                 CHECK(outcome.rms >= 0.999 * result.point.outcome.rms);
@@ -483,7 +488,7 @@ TEST_CASE("goals that cannot be met are refused with the nearest that can") {
     request.goal.triangles = 17;
     CHECK_THAT(refused(), Contains("--triangles 17") && Contains("18 triangles"));
     Job finest = request.job;
-    finest.tests.normal_threshold = finest.tests.summed_height_threshold = 0;
+    finest.tests.normal_threshold = finest.tests.threshold("summed_height_threshold") = 0;
     const Outcome most = Ground(finest).measure(finest);
     request.goal.triangles = most.triangles;
     CHECK(refused().empty());
@@ -496,6 +501,6 @@ TEST_CASE("goals that cannot be met are refused with the nearest that can") {
     request.goal.error = 0;
     request.goal.triangles = 100;
     request.space.summed_height = false;
-    request.job.tests.summed_height_threshold = 0;
+    request.job.tests.threshold("summed_height_threshold") = 0;
     CHECK_THAT(refused(), Contains("--triangles 100") && Contains("at any of the thresholds"));
 }

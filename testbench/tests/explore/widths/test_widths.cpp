@@ -31,7 +31,7 @@ Job sphere_job() {
     job.mesh.rows = 6;
     job.map.address_u = Addressing::repeat;
     job.displacement.scale = 0.1;
-    job.tests.summed_height_threshold = 2;  // with 2 displacement bits a step of its register is 1 / 12
+    job.tests.threshold("summed_height_threshold") = 2;  // with 2 displacement bits a step of its register is 1 / 12
     return job;
 }
 
@@ -144,7 +144,7 @@ TEST_CASE("widths: values that the formats hold exactly give the results of exac
     job.map.value = 0;
     job.map.width = job.map.height = 64;
     job.tests.normal_threshold = 0;
-    job.tests.summed_height_threshold = 0;
+    job.tests.threshold("summed_height_threshold") = 0;
     const WidthRun whole = run_of(job);
     CHECK(whole.position_max == 0);
     for (const std::uint64_t flips : whole.flips)
@@ -165,7 +165,7 @@ TEST_CASE("widths: on a flat surface a position's error is the midpoint's roundi
     job.displacement.bias = 0;
     job.formats.position_bits = 12;
     job.formats.position_fraction = 2;
-    job.tests.summed_height_threshold = 0.05;
+    job.tests.threshold("summed_height_threshold") = 0.05;
     const WidthRun run = run_of(job);
     REQUIRE(run.edges_split > 20);
     // every generation rounds down by at most half an LSB per axis: E_g <= (E_i + E_j) / 2 + 1/2
