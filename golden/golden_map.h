@@ -62,7 +62,7 @@ class Map {
     /// Sets the displacement map's heights, in codes. Everything else is still derived from the original codes.
     void set_heights(std::vector<double> heights);
 
-    /// Uses a test with a table of its own in place of the Summed Height Test.
+    /// At first a Summed Height Test with a threshold of 0.
     void set_height_test(std::shared_ptr<const HeightTest> test) { height_test_ = std::move(test); }
     const HeightTest& height_test() const { return *height_test_; }
 

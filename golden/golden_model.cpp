@@ -23,7 +23,7 @@ double displace_and_transform(Vertex& v, const Map& map, const Parameters& param
 
     const glm::dvec4 p(v.displaced_position, 1);
     v.w = glm::dot(parameters.row_w, p);
-    v.distance = parameters.rank_view == RankView::none ? 0 : eye_distance(v.displaced_position - parameters.eye);
+    v.distance = map.height_test().uses_distances() ? eye_distance(v.displaced_position - parameters.eye) : 0;
     v.in_front = v.w > parameters.near_plane;
     v.screen =
         v.in_front ? glm::dvec2(glm::dot(parameters.row_x, p), glm::dot(parameters.row_y, p)) / v.w : glm::dvec2(0);

@@ -17,9 +17,6 @@ namespace tessera::golden {
 /// is cut at a time.
 enum class Diagonal { shorter, first, second, greatest_rank };
 
-/// Section 4.7: whether errors are measured on the surface or as seen from the eye.
-enum class RankView { none, per_point, per_pixel };
-
 /// The second diagonal is chosen only if it is shorter by more than this fraction of the first. Of two diagonals of
 /// equal length the first is therefore chosen, whatever the rounding.
 inline constexpr double diagonal_margin = 1.0 / 64;
@@ -30,16 +27,8 @@ struct Parameters {
     double scale = 0;  ///< world units per code; displacement = scale * code + bias
     double bias = 0;   ///< world units
 
-    double normal_threshold = 0;         ///< difference of one component of two unit normals
-    double summed_height_threshold = 0;  ///< sum of codes; with the area option: one code
-    bool area = false;                   ///< the area option of section 4.2
-    int rank_threshold = 0;              ///< of the Rank Test, section 4.7
-    int bound_threshold = 0;             ///< likewise
-    double curvature_threshold = 0;      ///< codes times texels, section 4.8
-    double mipmap_threshold = 0;         ///< codes, section 4.9
-    RankView rank_view = RankView::none;
-    int rank_bits = 0, bound_bits = 0;  ///< of the table's entries; used with errors as seen from the eye
-    glm::dvec3 eye{0};                  ///< world
+    double normal_threshold = 0;  ///< difference of one component of two unit normals; the height test has its own
+    glm::dvec3 eye{0};            ///< world
     /// Vertex distances are multiples of this (world units), radii sums of two of them. 0: neither exists.
     double distance_step = 0;
     double view_threshold = 0;  ///< pixels
@@ -87,7 +76,7 @@ struct Vertex {
     glm::dvec3 displaced_normal{0};    ///< N', world, unit
     glm::dvec2 screen{0};              ///< pixels; zero if not in front
     double w = 0;                      ///< the transform's w
-    double distance = 0;               ///< D, from the eye
+    double distance = 0;               ///< D, from the eye; 0 if the height test uses none
     bool in_front = false;
     int generation = 0;  ///< 0: base vertex
 };

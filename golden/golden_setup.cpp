@@ -15,18 +15,15 @@ glm::dvec4 row_about(const glm::dvec3& eye, const glm::dvec3& direction) {
     return {direction, -glm::dot(direction, eye)};
 }
 
-// log2(value) + offset in `bits` bits, `integer_bits` of them in front of the point, clamped to their range.
-double on_log_scale(double value, double offset, int integer_bits, int bits) {
-    if (bits == 0 || value <= 0)
-        return 0;
-    return std::clamp(std::ldexp(std::log2(value) + offset, bits - integer_bits), 0.0, std::ldexp(1.0, bits) - 1);
-}
-
 }  // namespace
 
 glm::dvec3 unit(const glm::dvec3& v) {
     const double largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
     return largest > 0 ? glm::normalize(v / largest) : v;
+}
+
+double focal_length(const Camera& camera) {
+    return camera.viewport.y / 2 / std::tan(camera.field_of_view / 2 * degree);
 }
 
 View make_view(const Camera& camera, const Placement& placement) {
@@ -43,50 +40,11 @@ View make_view(const Camera& camera, const Placement& placement) {
     // above the viewport's centre. Pixels are square.
     const glm::dvec3 forward = -view.backward;
     const glm::dvec2 centre = camera.viewport / 2.0;
-    const double pixels = centre.y / std::tan(camera.field_of_view / 2 * degree);
+    const double pixels = focal_length(camera);
     view.row_x = row_about(view.eye, centre.x * forward + pixels * view.right);
     view.row_y = row_about(view.eye, centre.y * forward + pixels * view.up);
     view.row_w = row_about(view.eye, forward);
     return view;
-}
-
-namespace {
-
-// The size in pixels of an object of height 1 at distance 1 in the centre of the picture.
-double focal_length(const Camera& camera) {
-    return camera.viewport.y / 2 / std::tan(camera.field_of_view / 2 * degree);
-}
-
-double world_per_code(const Scene& scene) {
-    return std::abs(scene.placement.scale * (scene.highest - scene.lowest) / scene.highest_code);
-}
-
-// In units of a 16 bit entry, not clamped: the distance term may bring the threshold back into range.
-double seen_threshold(double octaves, int integer_bits) {
-    return std::isnan(octaves) ? -HUGE_VAL : std::ldexp(octaves, 16 - integer_bits);
-}
-
-}  // namespace
-
-double rank_threshold(const Scene& scene) {
-    if (scene.rank_view != RankView::none) {
-        const double pixels = focal_length(scene.camera);
-        const double side = scene.rank_view == RankView::per_pixel ? std::sqrt(scene.texel_area) * pixels : 1;
-        const double codes = scene.rank_threshold / (world_per_code(scene) * pixels * side);
-        return scene.rank_bits == 0 ? 0 : seen_threshold(16 + std::log2(codes * codes), 6);
-    }
-    const double error = scene.rank_threshold * scene.highest_code;
-    return on_log_scale(error * error, 16, 6, scene.rank_bits);
-}
-
-double bound_threshold(const Scene& scene) {
-    if (scene.rank_view != RankView::none) {
-        const double focal = focal_length(scene.camera),
-                     secant = std::hypot(1, glm::length(scene.camera.viewport) / 2 / focal);
-        const double pixels = world_per_code(scene) * secant * (focal * secant + scene.bound_threshold);
-        return scene.bound_bits == 0 ? 0 : seen_threshold(8 + std::log2(scene.bound_threshold / pixels), 5);
-    }
-    return on_log_scale(scene.bound_threshold * scene.highest_code - scene.code_rounding, 8, 5, scene.bound_bits);
 }
 
 Parameters make_parameters(const Scene& scene) {
@@ -95,19 +53,6 @@ Parameters make_parameters(const Scene& scene) {
     result.scale = scene.placement.scale * (scene.highest - scene.lowest) / scene.highest_code;
     result.bias = scene.placement.scale * scene.lowest;
     result.normal_threshold = scene.normal_threshold;
-    result.summed_height_threshold = scene.summed_height_threshold * scene.highest_code;
-    result.area = scene.area;
-    result.curvature_threshold = scene.curvature_threshold * scene.highest_code;
-    result.mipmap_threshold = scene.mipmap_threshold * scene.highest_code;
-    // A threshold beyond 2^20 never comes back into the range of an entry's 16 bits.
-    const auto rounded_down = [](double threshold) {
-        return static_cast<int>(std::floor(std::clamp(threshold, -0x1p20, 0x1p20)));
-    };
-    result.rank_threshold = rounded_down(rank_threshold(scene));
-    result.bound_threshold = rounded_down(bound_threshold(scene));
-    result.rank_view = scene.rank_view;
-    result.rank_bits = scene.rank_bits;
-    result.bound_bits = scene.bound_bits;
     result.eye = view.eye;
     result.view_threshold = scene.view_threshold;
     result.generation_limit = scene.generation_limit;

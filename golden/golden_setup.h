@@ -35,28 +35,22 @@ struct View {
 };
 View make_view(const Camera& camera, const Placement& placement);
 
+/// The size in pixels of an object of height 1 at distance 1 in the centre of the picture.
+double focal_length(const Camera& camera);
+
 /// v / |v|, without overflow or underflow; zero stays zero.
 glm::dvec3 unit(const glm::dvec3& v);
 
-/// All inputs of the golden model except mesh and map.
+/// All inputs of the golden model except mesh, map and height test.
 struct Scene {
     Camera camera;
     Placement placement;
 
     double lowest = 0, highest = 1;  ///< displacement of code 0 and of the highest code, model units
     double highest_code = 65535;
-    double code_rounding = 0;  ///< the largest difference of a map's value and its code, in codes
-
-    double normal_threshold = 0;         ///< difference of one component of two unit normals
-    double summed_height_threshold = 0;  ///< full-scale texels; with the area option: full scale
-    bool area = false;
-    double rank_threshold = 0;          ///< full scale times the square root of a texel; as seen: pixels
-    double bound_threshold = 0;         ///< full scale; as seen: pixels
-    double curvature_threshold = 0;     ///< full scale times texels
-    double mipmap_threshold = 0;        ///< full scale
-    int rank_bits = 0, bound_bits = 0;  ///< of a Rank Table's entry; 0 if absent
-    RankView rank_view = RankView::none;
     double texel_area = 1;  ///< world units
+
+    double normal_threshold = 0;  ///< difference of one component of two unit normals
     /// Texture coordinates are not clamped on a clamped axis: the mesh extends beyond the map.
     bool beyond_map = false;
     double view_threshold = 0;  ///< pixels
@@ -71,10 +65,6 @@ struct Scene {
     glm::dvec3 light{0, 0, 1};  ///< direction towards the light, world, any length
 };
 Parameters make_parameters(const Scene& scene);
-
-/// The Rank Test's thresholds on their logarithmic scales (4.7), before rounding down; 0 for what the table lacks.
-double rank_threshold(const Scene& scene);
-double bound_threshold(const Scene& scene);
 
 /// Unit direction towards the light; components along the view's right, up and backward axes.
 glm::dvec3 light_as_seen(const Scene& scene);

@@ -35,10 +35,8 @@ Curvature CurvatureTest::cell(const glm::dvec2& t, int level, const Map& map) co
 }
 
 HeightTest::Verdict CurvatureTest::decide(const Vertex& i, const Vertex& j, const Vertex& m, const Map& map,
-                                          const Parameters& parameters) const {
-    const auto verdict = [&](double curvature) {
-        return Verdict{curvature > parameters.curvature_threshold, curvature, parameters.curvature_threshold, 0};
-    };
+                                          const Parameters&) const {
+    const auto verdict = [&](double curvature) { return Verdict{curvature > threshold_, curvature, threshold_, 0}; };
     const glm::dvec2 d = i.texture - j.texture;
     const double longer = std::max(std::abs(d.x), std::abs(d.y));
     int level = 1;
@@ -55,12 +53,6 @@ HeightTest::Verdict CurvatureTest::decide(const Vertex& i, const Vertex& j, cons
     const auto whole_units = [&](double codes) { return std::floor(codes / c.unit) * c.unit; };
     const double bend = whole_units(std::abs(c.xx * u * u + xy * u * v + c.yy * v * v));
     return verdict((std::max(bend, c.rest) + whole_units(std::min(bend, c.rest) / 2)) * length);
-}
-
-const CurvatureTable& curvature_table(const Map& map) {
-    static const CurvatureTable none;
-    const auto* const test = height_test_of<CurvatureTest>(map);
-    return test == nullptr ? none : test->table();
 }
 
 Curvature fit_curvature(const Map& map, std::int64_t column, std::int64_t row, std::int64_t reach) {

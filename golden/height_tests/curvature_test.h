@@ -24,10 +24,11 @@ struct CurvatureTable {
 /// Section 4.8. value: codes times texels.
 class CurvatureTest : public HeightTest {
   public:
-    /// The table may cover more than the map.
-    explicit CurvatureTest(CurvatureTable table) : table_(std::move(table)) {}
+    /// The table may cover more than the map. threshold: codes times texels.
+    CurvatureTest(CurvatureTable table, double threshold) : table_(std::move(table)), threshold_(threshold) {}
 
     const CurvatureTable& table() const { return table_; }
+    double threshold() const { return threshold_; }
     /// The cell nearest to the texel that contains t. level: from 2 to the table's highest.
     Curvature cell(const glm::dvec2& t, int level, const Map& map) const;
     Verdict decide(const Vertex& i, const Vertex& j, const Vertex& m, const Map& map,
@@ -35,10 +36,8 @@ class CurvatureTest : public HeightTest {
 
   private:
     CurvatureTable table_;
+    double threshold_;
 };
-
-/// That of the map's Curvature Test; without one an empty table.
-const CurvatureTable& curvature_table(const Map& map);
 
 /// A cell of the Curvature Table (ALGORITHM.md 4.8 and section 6), before rounding; `unit` is 0. reach: half the side of
 /// its square, in texels. column, row: of its centre's texel, which may lie beyond a clamped map.

@@ -21,17 +21,13 @@ class HeightTest {
     /// m: the vertex inserted between i and j.
     virtual Verdict decide(const Vertex& i, const Vertex& j, const Vertex& m, const Map& map,
                            const Parameters& parameters) const = 0;
+    virtual bool uses_distances() const { return false; }  ///< of vertices, from the eye
 };
 
 /// The map's height test if it is of this kind; else null.
 template <class Test>
 const Test* height_test_of(const Map& map) {
     return dynamic_cast<const Test*>(&map.height_test());
-}
-
-template <class Test>
-bool has(const Map& map) {
-    return height_test_of<Test>(map) != nullptr;
 }
 
 }  // namespace tessera::golden

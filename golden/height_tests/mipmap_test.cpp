@@ -7,7 +7,7 @@
 
 namespace tessera::golden {
 
-MipmapTest::MipmapTest(const Map& map, MipmapFilter filter) {
+MipmapTest::MipmapTest(const Map& map, MipmapFilter filter, double threshold) : threshold_(threshold) {
     const std::int64_t width = map.width(), height = map.height();
     for (std::int64_t side = 1;; side *= 2) {
         const std::int64_t columns = (width + side - 1) / side, rows = (height + side - 1) / side;
@@ -39,7 +39,7 @@ double MipmapTest::height(const glm::dvec2& t, int level, const Map& map) const 
 }
 
 HeightTest::Verdict MipmapTest::decide(const Vertex& i, const Vertex& j, const Vertex& m, const Map& map,
-                                       const Parameters& parameters) const {
+                                       const Parameters&) const {
     const glm::dvec2 d = glm::abs(i.texture - j.texture);
     const double half = std::max(d.x, d.y) / 2;
     const int highest = static_cast<int>(levels_.size()) - 1;
@@ -48,13 +48,7 @@ HeightTest::Verdict MipmapTest::decide(const Vertex& i, const Vertex& j, const V
         ++level;
     const auto filtered = [&](const Vertex& v) { return height(v.texture, level, map); };
     const double deviation = std::abs(filtered(m) - (filtered(i) + filtered(j)) / 2);
-    return {deviation > parameters.mipmap_threshold, deviation, parameters.mipmap_threshold, 0};
-}
-
-const MipmapTest::Levels& mipmap_levels(const Map& map) {
-    static const MipmapTest::Levels none;
-    const auto* const test = height_test_of<MipmapTest>(map);
-    return test == nullptr ? none : test->levels();
+    return {deviation > threshold_, deviation, threshold_, 0};
 }
 
 }  // namespace tessera::golden

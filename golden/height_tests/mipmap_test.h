@@ -14,9 +14,11 @@ class MipmapTest : public HeightTest {
     /// Heights of the blocks of 2^l x 2^l texels of each level l, rows from the bottom.
     using Levels = std::vector<std::vector<double>>;
 
-    MipmapTest(const Map& map, MipmapFilter filter);
+    /// threshold: codes.
+    MipmapTest(const Map& map, MipmapFilter filter, double threshold);
 
     const Levels& levels() const { return levels_; }
+    double threshold() const { return threshold_; }
     /// The height of the block that holds the texel that contains t. level: at most the last.
     double height(const glm::dvec2& t, int level, const Map& map) const;
     Verdict decide(const Vertex& i, const Vertex& j, const Vertex& m, const Map& map,
@@ -24,9 +26,7 @@ class MipmapTest : public HeightTest {
 
   private:
     Levels levels_;
+    double threshold_;
 };
-
-/// Those of the map's Mipmap Test; without one none.
-const MipmapTest::Levels& mipmap_levels(const Map& map);
 
 }  // namespace tessera::golden

@@ -1,13 +1,9 @@
 #include "testbench/check/conformance/golden_inputs.h"
 
 #include <cstdint>
-#include <memory>
 #include <utility>
 
-#include "golden/height_tests/curvature_test.h"
-#include "golden/height_tests/mipmap_test.h"
-#include "golden/height_tests/rank_test.h"
-#include "modules/datapath/curvature.h"
+#include "testbench/check/conformance/height_test_check.h"
 
 namespace tessera {
 
@@ -29,36 +25,9 @@ golden::Filter golden_filter(datapath::MapFilter filter) {
     return filter == datapath::MapFilter::bilinear ? golden::Filter::bilinear : golden::Filter::nearest;
 }
 
-void set_tables(golden::Map& map, const PreparedScene& prepared) {
+void set_heights(golden::Map& map, const PreparedScene& prepared) {
     if (!prepared.fitted_heights.empty())
         map.set_heights({prepared.fitted_heights.begin(), prepared.fitted_heights.end()});
-    const RankTables& ranks = prepared.rank_tables;
-    if (ranks.columns > 0) {
-        std::vector<glm::dvec2> midpoints;
-        midpoints.reserve(ranks.midpoints.size());
-        for (const datapath::TexCoord& t : ranks.midpoints)
-            midpoints.push_back(glm::dvec2(t.u, t.v) * std::ldexp(1.0, -prepared.registers.formats.texture.fraction));
-        map.set_height_test(std::make_shared<golden::RankTest>(
-            golden::RankTable{ranks.columns, ranks.rows, ranks.rank, ranks.bound, ranks.radius,
-                              static_cast<int>(ranks.highest_bound_threshold), std::move(midpoints)}));
-    }
-    if (!prepared.mipmap_table.entries.empty())
-        set_mipmap(map, prepared.mipmap_table.filter);
-    const CurvatureTable& table = prepared.curvature_table;
-    if (table.entries.empty())
-        return;
-    golden::CurvatureTable curvatures{table.covered.width, table.covered.height, {}};
-    for (const std::uint64_t packed : table.entries) {
-        const datapath::CurvatureEntry entry = datapath::unpack_curvature(packed);
-        const double unit = std::ldexp(1.0, entry.exponent - datapath::curvature_fraction);
-        curvatures.cells.push_back({entry.xx * unit, entry.xy * unit, entry.yy * unit, entry.rest * unit, unit});
-    }
-    map.set_height_test(std::make_shared<golden::CurvatureTest>(std::move(curvatures)));
-}
-
-void set_mipmap(golden::Map& map, MipmapFilter filter) {
-    map.set_height_test(std::make_shared<golden::MipmapTest>(
-        map, filter == MipmapFilter::maximum ? golden::MipmapFilter::maximum : golden::MipmapFilter::mean));
 }
 
 namespace {
@@ -76,23 +45,9 @@ golden::Map golden_map(const MachineSetup& setup) {
             normals.push_back(dequantise.direction(
                 map_normal(setup.map, x, y, setup.height_per_code, setup.texel_size, setup.registers.formats.normal)));
     map.set_normals(std::move(normals));
-    set_tables(map, setup);
+    set_heights(map, setup);
+    map.set_height_test(check_of(setup.registers.formats.height_test).of_machine(setup, map));
     return map;
-}
-
-/// The registers' thresholds hold at D_i + D_j = 1 LSB, golden's at a mean distance of 1: they differ by an octave and
-/// by the position of the binary point.
-void set_rank_view(const datapath::Registers& registers, golden::Parameters& result) {
-    const datapath::Formats& formats = registers.formats;
-    const int octaves = formats.view_distance.fraction + 1;
-    result.rank_view = registers.tests.rank_per_pixel ? golden::RankView::per_pixel : golden::RankView::per_point;
-    result.rank_bits = formats.rank_bits;
-    result.bound_bits = formats.bound_bits;
-    result.rank_threshold += octaves * (registers.tests.rank_per_pixel ? 4096 : 2048);
-    result.bound_threshold += octaves * 2048;
-    const auto& eye = registers.transform.eye;
-    result.eye = glm::dvec3(eye[0], eye[1], eye[2]) * std::ldexp(1.0, -formats.position.fraction);
-    result.distance_step = std::ldexp(1.0, -formats.view_distance.fraction);
 }
 
 }  // namespace
@@ -109,16 +64,11 @@ golden::Parameters golden_parameters(const datapath::Registers& registers) {
     result.bias = real(registers.displacement.bias, position);
 
     result.normal_threshold = real(tests.normal_threshold, formats.normal.fraction);
-    result.area = tests.summed_height_unit == datapath::SummedHeightUnit::area;
-    // With the `sum` unit, the register holds four times the threshold.
-    result.summed_height_threshold = real(tests.summed_height_threshold, result.area ? 0 : 2);
-    result.rank_threshold = static_cast<int>(tests.rank_threshold);
-    result.bound_threshold = static_cast<int>(tests.bound_threshold);
-    result.curvature_threshold =
-        real(static_cast<std::int64_t>(tests.curvature_threshold), datapath::curvature_fraction);
-    result.mipmap_threshold = real(tests.mipmap_threshold, 1);
-    if (formats.distances)
-        set_rank_view(registers, result);
+    if (formats.distances) {
+        const auto& eye = transform.eye;
+        result.eye = glm::dvec3(eye[0], eye[1], eye[2]) * std::ldexp(1.0, -position);
+        result.distance_step = std::ldexp(1.0, -formats.view_distance.fraction);
+    }
     result.view_threshold = real(tests.view_threshold, formats.screen.fraction);
     result.generation_limit = static_cast<int>(tests.generation_limit);
     const int normal = formats.normal.fraction;

@@ -52,12 +52,10 @@ golden::AddressMode golden_mode(datapath::AddressMode mode);
 golden::Diagonal golden_diagonal(datapath::Triangulation choice);
 golden::Filter golden_filter(datapath::MapFilter filter);
 
-/// Copies what golden takes as given: fitted heights, the Rank or the Curvature Table, the mipmap's filter.
-void set_tables(golden::Map& map, const PreparedScene& prepared);
-/// Gives the map a Mipmap Test.
-void set_mipmap(golden::Map& map, MipmapFilter filter);
+/// Fitted heights, which golden takes as given.
+void set_heights(golden::Map& map, const PreparedScene& prepared);
 
-/// The registers as the golden model's parameters. Exact except for the transform's fourth column and the near plane,
+/// The registers, but for the height test's, as the golden model's parameters. Exact except for the transform's fourth column and the near plane,
 /// 64 bit integers that a double rounds to 53 bits.
 golden::Parameters golden_parameters(const datapath::Registers& registers);
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
-#include "golden/height_tests/rank_test.h"
 #include "testbench/check/conformance/golden_inputs.h"
+#include "testbench/check/conformance/height_test_check.h"
 #include "testbench/machine/resolve_job.h"
 
 namespace tessera {
@@ -54,12 +54,6 @@ double displacement_of(double value, const Job& job, const std::array<double, 2>
     return job.displacement.bias + job.displacement.scale * part;
 }
 
-golden::RankView golden_rank_view(RankView view) {
-    return view == RankView::per_point   ? golden::RankView::per_point
-           : view == RankView::per_pixel ? golden::RankView::per_pixel
-                                         : golden::RankView::none;
-}
-
 golden::BaseFrames frames_of(const BaseMesh& mesh) {
     std::vector<golden::BasePoint> points;
     points.reserve(mesh.vertices.size());
@@ -80,17 +74,6 @@ double texel_parts(const Job::Formats& formats, golden::Filter filter) {
     return filter == golden::Filter::bilinear && formats.texture_fraction > 0 ? 2 : 1;
 }
 
-/// Largest error of a value's code, in codes.
-double largest_rounding(const std::vector<float>& heights, const std::array<double, 2>& code_range,
-                        double highest_code) {
-    double largest = 0;
-    for (const float height : heights) {
-        const double code = golden::code_of(height, code_range[0], code_range[1], highest_code);
-        largest = std::max(largest, std::abs(std::floor(code + 0.5) - code));
-    }
-    return largest;
-}
-
 golden::Scene make_scene(const Job& job, const glm::dvec2& size, const HeightMap& map,
                          const std::vector<float>& heights, const std::array<double, 2>& code_range,
                          const ModelScale& model_scale) {
@@ -108,18 +91,6 @@ golden::Scene make_scene(const Job& job, const glm::dvec2& size, const HeightMap
 
     const Job::Tests& tests = job.tests;
     scene.normal_threshold = tests.normal_threshold;
-    scene.summed_height_threshold = tests.summed_height_threshold;
-    scene.area = tests.summed_height_unit == SummedHeightUnit::area;
-    scene.rank_threshold = tests.rank_threshold;
-    scene.bound_threshold = tests.bound_threshold;
-    scene.curvature_threshold = tests.curvature_threshold;
-    scene.mipmap_threshold = tests.mipmap_threshold;
-    if (job.hardware.height_test == HeightTest::rank) {
-        scene.rank_view = golden_rank_view(job.tests.rank_view);
-        scene.rank_bits = static_cast<int>(job.formats.rank_bits);
-        scene.bound_bits = static_cast<int>(job.formats.bound_bits);
-        scene.code_rounding = scene.bound_bits > 0 ? largest_rounding(heights, code_range, scene.highest_code) : 0;
-    }
     scene.view_threshold = tests.view_threshold;
     scene.generation_limit = static_cast<int>(tests.generation_limit);
     scene.highlight_angle = tests.highlight_angle;
@@ -163,12 +134,8 @@ GoldenJob::GoldenJob(const Job& job, const BaseMesh& mesh, const HeightMap& heig
       scene_(make_scene(job_, frames_.size, height_map, heights(), code_range_, model_scale)),
       parameters_(golden::make_parameters(scene_)),
       map_(make_map(job_, height_map, heights(), code_range_, frames_.size, scene_, parameters_.scale)) {
-    set_tables(map_, tables);
-    if (job_.hardware.height_test == HeightTest::mipmap)  // the filter as the job has it, not as the host
-        set_mipmap(map_, job_.tests.mipmap_filter);
-    if (scene_.rank_view == golden::RankView::none)
-        parameters_.bound_threshold =
-            std::min(parameters_.bound_threshold, golden::rank_table(map_).highest_bound_threshold);
+    set_heights(map_, tables);
+    map_.set_height_test(check_of(job_.hardware.height_test).of_job(*this, tables));
 }
 
 golden::Vertex GoldenJob::vertex(std::uint32_t triangle, std::size_t corner) const {

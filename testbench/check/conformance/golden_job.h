@@ -23,7 +23,7 @@ namespace tessera {
 class GoldenJob {
   public:
     /// `job` must be resolved (resolve_job.h), `mesh` and `height_map` must outlive this.
-    /// `tables`: sets the inputs that golden takes as given (set_tables).
+    /// `tables`: what golden takes as given, fitted heights and the height test's table.
     GoldenJob(const Job& job, const BaseMesh& mesh, const HeightMap& height_map, const ModelScale& model_scale,
               const PreparedScene& tables = {});
 

@@ -5,10 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "golden/height_tests/curvature_test.h"
-#include "golden/height_tests/mipmap_test.h"
-#include "golden/height_tests/rank_test.h"
-#include "testbench/check/conformance/setup_judge.h"
+#include "testbench/check/conformance/height_test_check.h"
 
 namespace tessera {
 
@@ -86,7 +83,7 @@ class RegisterCheck {
         format("screen", formats_.screen, Format::make_signed(bits(job.screen_bits), bits(job.screen_fraction)));
         flag("formats.generation_bits", formats_.generation_bits, number(job.generation_bits));
         flag("formats.highlight_tag", number(formats_.highlight_tag), number(job_.tests.highlight));
-        flag("formats.distances", number(formats_.distances), number(job_.tests.rank_view != RankView::none));
+        flag("formats.distances", number(formats_.distances), number(golden_.map().height_test().uses_distances()));
         check_view_distance();
         check_summed_height();
     }
@@ -187,41 +184,10 @@ class RegisterCheck {
         flag("map.height", registers_.map.height, map.height());
         flag("map.address_u", repeats_here(registers_.map.address_u), repeats(map.address_u()));
         flag("map.address_v", repeats_here(registers_.map.address_v), repeats(map.address_v()));
-        const auto layout = [&](const char* name, const TableLayout& table, int columns, int rows, int bits) {
-            judge_.judge([&] { return fmt::format("{}.columns", name); }, table.columns, columns, exact);
-            judge_.judge([&] { return fmt::format("{}.rows", name); }, table.rows, rows, exact);
-            judge_.judge([&] { return fmt::format("{}.entry_bytes", name); }, table.entry_bytes, number((bits + 7) / 8),
-                         exact);
-        };
-        layout("displacement_map", registers_.displacement_map, map.width(), map.height(), formats_.displacement.bits);
-        layout("normal_map", registers_.normal_map, map.width(), map.height(), 3 * formats_.normal.bits);
-        const TableLayout& table = registers_.height_table;
-        switch (job_.hardware.height_test) {
-            case HeightTest::summed_height:
-                layout("summed_height_table", table, map.width() + 1, map.height() + 1, formats_.summed_height.bits);
-                break;
-            case HeightTest::rank:
-                layout("rank_table", table, static_cast<int>(golden::rank_table(map).columns),
-                       static_cast<int>(golden::rank_table(map).rows),
-                       static_cast<int>(job_.formats.rank_bits + job_.formats.bound_bits) +
-                           (formats_.distances && job_.formats.bound_bits > 0 ? datapath::radius_bits : 0));
-                flag("rank_table.columns", registers_.covered.columns, number(golden::rank_table(map).columns));
-                flag("rank_table.rows", registers_.covered.rows, number(golden::rank_table(map).rows));
-                break;
-            case HeightTest::curvature:
-                layout("curvature_table", table, static_cast<int>(golden::curvature_table(map).cells.size()), 1, 36);
-                flag("curvature_table.columns", registers_.covered.columns,
-                     number(golden::curvature_table(map).columns));
-                flag("curvature_table.rows", registers_.covered.rows, number(golden::curvature_table(map).rows));
-                break;
-            case HeightTest::mipmap: {
-                std::size_t blocks = 0;
-                for (const std::vector<double>& level : golden::mipmap_levels(map))
-                    blocks += level.size();
-                layout("mipmap_table", table, static_cast<int>(blocks), 1, formats_.displacement.bits);
-                break;
-            }
-        }
+        judge_layout(judge_, "displacement_map", registers_.displacement_map, map.width(), map.height(),
+                     formats_.displacement.bits);
+        judge_layout(judge_, "normal_map", registers_.normal_map, map.width(), map.height(), 3 * formats_.normal.bits);
+        check_of(job_.hardware.height_test).check_layout(registers_, golden_, judge_);
         std::array<const TableLayout*, 3> tables{&registers_.displacement_map, &registers_.normal_map,
                                                  &registers_.height_table};
         std::sort(tables.begin(), tables.end(),
@@ -244,17 +210,14 @@ class RegisterCheck {
         flag("tests.generation_test", number(tests.generation_test), number(golden.enabled.generation));
         flag("tests.highlight_test", number(tests.highlight_test), number(golden.enabled.highlight));
         judge_.judge("tests.normal_threshold", tests.normal_threshold, golden.normal_threshold * normal, rounded_down);
-        flag("tests.summed_height_unit", number(tests.summed_height_unit == datapath::SummedHeightUnit::area),
-             number(golden.area));
-        judge_.judge("tests.summed_height_threshold", number(tests.summed_height_threshold),
-                     golden.summed_height_threshold * (golden.area ? 1 : 4), rounded_down);
-        check_rank_thresholds();
-        // Without the test its register does not exist and reads as 0.
-        const bool curvature = golden::has<golden::CurvatureTest>(golden_.map());
-        judge_.judge("tests.curvature_threshold", number(tests.curvature_threshold),
-                     curvature ? golden.curvature_threshold * 8 : 0, rounded_down);
-        judge_.judge("tests.mipmap_threshold", tests.mipmap_threshold,
-                     golden::mipmap_levels(golden_.map()).empty() ? 0 : golden.mipmap_threshold * 2, rounded_down);
+        flag("tests.summed_height_unit", number(tests.summed_height_unit == SummedHeightUnit::area),
+             number(job_.tests.summed_height_unit == SummedHeightUnit::area));
+        check_of(job_.hardware.height_test).check_thresholds(registers_, golden_, judge_);
+        const auto declared = functions_of(job_.hardware.height_test).thresholds(formats_);
+        for (std::size_t k = 0; k < declared.size(); ++k)
+            if (declared[k].bits == 0)
+                judge_.judge([&] { return indexed("tests.height_thresholds", k); },
+                             number(tests.height_thresholds[k]), 0, exact);
         judge_.judge("tests.view_threshold", tests.view_threshold,
                      golden.view_threshold * lsb_per_unit(formats_.screen), rounded_down);
         flag("tests.generation_limit", tests.generation_limit, golden.generation_limit);
@@ -266,36 +229,6 @@ class RegisterCheck {
                      double_rounding * normal * normal);
         judge_.judge("tests.highlight_normal_threshold", tests.highlight_normal_threshold,
                      on * golden.highlight_normal_threshold * normal, rounded_down);
-    }
-
-    void check_rank_thresholds() {
-        const datapath::TestParameters& tests = registers_.tests;
-        const golden::Scene& scene = golden_.scene();
-        if (scene.rank_view == golden::RankView::none) {
-            judge_.judge("tests.rank_threshold", tests.rank_threshold, golden::rank_threshold(scene), rounded_down,
-                         double_rounding * std::ldexp(1.0, formats_.rank_bits));
-            judge_.judge("tests.bound_threshold", tests.bound_threshold,
-                         std::min(golden::bound_threshold(scene),
-                                  number(golden::rank_table(golden_.map()).highest_bound_threshold)),
-                         rounded_down, double_rounding * std::ldexp(1.0, formats_.bound_bits));
-            return;
-        }
-        // Golden's thresholds are those at a mean distance of 1.
-        const bool per_pixel = scene.rank_view == golden::RankView::per_pixel;
-        const double octaves = formats_.view_distance.fraction + 1;
-        const auto threshold = [&](const char* name, std::int64_t hardware, double golden, double per_octave,
-                                   int bits) {
-            const double most = std::ldexp(1.0, bits - 1);
-            judge_.judge(name, number(hardware), std::clamp(golden - octaves * per_octave, -most, most - 1),
-                         rounded_down, double_rounding * most + 2 * per_octave * golden_.texel_rounding());
-        };
-        if (formats_.rank_bits > 0)
-            threshold("tests.rank_threshold", tests.rank_threshold, golden::rank_threshold(scene),
-                      per_pixel ? 4096 : 2048, datapath::rank_limit_bits);
-        if (formats_.bound_bits > 0)
-            threshold("tests.bound_threshold", tests.bound_threshold, golden::bound_threshold(scene), 2048,
-                      datapath::bound_limit_bits);
-        flag("tests.rank_per_pixel", number(tests.rank_per_pixel), number(per_pixel));
     }
 
     /// Rounding error of the half vector's components: the axes' error over the length of the two directions' sum.
@@ -524,9 +457,11 @@ SetupResult check_setup(const MachineSetup& setup, const GoldenJob& golden, Simu
     SetupResult result;
     RegisterCheck(setup, golden, result).run();
     BaseCheck(setup, golden, result).run();
-    const golden::DerivedRanks ranks = derived_ranks(setup, golden, result);
-    for (const auto& machine : simulation.machines)
-        check_tables(setup, golden, ranks, machine->host, result);
+    const auto check_height_table = check_of(golden.job().hardware.height_test).table_check(setup, golden, result);
+    for (const auto& machine : simulation.machines) {
+        check_maps(setup, golden, machine->host, result);
+        check_height_table(machine->host);
+    }
     return result;
 }
 

@@ -2,14 +2,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <glm/glm.hpp>
+#include <vector>
 
-#include "golden/golden_ranks.h"
 #include "modules/datapath/format.h"
 #include "testbench/check/conformance/setup_check.h"
 
-/// Internal to setup_check.cpp and setup_tables.cpp.
+/// Internal to setup_check.cpp, setup_tables.cpp and height_tests/.
 namespace tessera::setup_check {
 
 /// The allowed range of hardware minus golden, in LSB.
@@ -81,11 +85,23 @@ inline double lsb_per_unit(const datapath::Format& format) {
     return std::ldexp(1.0, format.fraction);
 }
 
-/// The Rank Table that golden derives, empty if there is none or midpoints share entries. Reports an invalid order.
-golden::DerivedRanks derived_ranks(const MachineSetup& setup, const GoldenJob& golden, SetupResult& result);
+/// entry_bits: rounded up to whole bytes.
+void judge_layout(Judge& judge, const char* name, const datapath::TableLayout& table, double columns, double rows,
+                  int entry_bits);
 
-/// Checks every entry of the three tables.
-void check_tables(const MachineSetup& setup, const GoldenJob& golden, const golden::DerivedRanks& ranks, Host& host,
-                  SetupResult& result);
+/// The texture coordinates, in texels, of the base triangles that the machine receives.
+std::vector<std::array<glm::dvec2, 3>> base_texels(const MachineSetup& setup, const GoldenJob& golden,
+                                                   const SetupResult& result);
+/// Compares a table's size in texels with what these base triangles cover.
+void judge_extent(Judge& judge, const std::vector<std::array<glm::dvec2, 3>>& base, const golden::Map& map,
+                  std::int64_t columns, std::int64_t rows);
+
+/// Reads a table of this size from its memory, row by row.
+void each_entry(Judge& judge, tlm_utils::simple_initiator_socket<Host>& socket, const datapath::TableLayout& layout,
+                double columns, double rows,
+                const std::function<void(std::uint32_t x, std::uint32_t y, std::uint64_t entry)>& check);
+
+/// Checks every entry of the displacement map and of the normal map.
+void check_maps(const MachineSetup& setup, const GoldenJob& golden, Host& host, SetupResult& result);
 
 }  // namespace tessera::setup_check

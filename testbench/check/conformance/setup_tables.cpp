@@ -4,10 +4,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "golden/height_tests/curvature_test.h"
-#include "golden/height_tests/mipmap_test.h"
-#include "golden/height_tests/rank_test.h"
-#include "modules/datapath/curvature.h"
 #include "modules/datapath/map_entry.h"
 #include "testbench/check/conformance/setup_judge.h"
 
@@ -49,43 +45,17 @@ class TableReader {
     std::vector<unsigned char> bytes_;
 };
 
-class TableCheck {
+class MapCheck {
   public:
-    TableCheck(const MachineSetup& setup, const GoldenJob& golden, const golden::DerivedRanks& ranks, Host& host,
-               SetupResult& result)
-        : registers_(setup.registers), golden_(golden), ranks_(ranks), host_(host), result_(result) {}
+    MapCheck(const MachineSetup& setup, const GoldenJob& golden, Host& host, SetupResult& result)
+        : registers_(setup.registers), golden_(golden), host_(host), result_(result) {}
 
     void run() {
         check_displacement_map();
         check_normal_map();
-        if (golden::has<golden::RankTest>(golden_.map()))
-            check_rank_table();
-        else if (golden::has<golden::CurvatureTest>(golden_.map()))
-            check_curvature_table();
-        else if (golden::has<golden::MipmapTest>(golden_.map()))
-            check_mipmap_table();
-        else
-            check_summed_height_table();
     }
 
   private:
-    template <typename Check>
-    void each_entry(Judge& judge, Socket& socket, const TableLayout& layout, int columns, int rows, Check check) {
-        // A wrong layout has already been reported with the registers.
-        if (layout.columns != number(columns) || layout.rows != number(rows) || layout.entry_bytes > 8)
-            return;
-        TableReader table(socket, layout);
-        for (std::uint32_t y = 0; y < layout.rows; ++y) {
-            const bool there = table.read_row(y);
-            if (!there) {
-                judge.require(false, [&] { return fmt::format("row {} is not in the memory", y); });
-                return;
-            }
-            for (std::uint32_t x = 0; x < layout.columns; ++x)
-                check(x, y, table.entry(x));
-        }
-    }
-
     std::size_t texel_of(std::uint32_t x, std::uint32_t y) const {
         return std::size_t{y} * static_cast<std::size_t>(golden_.map().width()) + x;
     }
@@ -150,160 +120,69 @@ class TableCheck {
         glm::dvec3 low{0}, high{0};
     };
 
-    void check_summed_height_table() {
-        Judge judge(result_, "summed height table", "every sum of codes, exact modulo 2^bits");
-        const golden::Map& map = golden_.map();
-        const auto mask = static_cast<std::uint64_t>(registers_.formats.summed_height.highest);
-        each_entry(judge, host_.summed_height_table, registers_.height_table, map.width() + 1, map.height() + 1,
-                   [&](std::uint32_t x, std::uint32_t y, std::uint64_t sum) {
-                       judge.judge([&] { return fmt::format("({}, {})", x, y); }, number(sum),
-                                   number(map.sum({0, 0, x, y}) & mask), exact);
-                   });
-    }
-
-    void check_rank_table() {
-        const golden::RankTable& table = golden::rank_table(golden_.map());
-        const bool derived = !ranks_.ranks.empty() || !ranks_.bounds.empty();
-        Judge judge(result_, "rank table",
-                    derived ? "every rank, bound and radius; of a double's error, both sides"
-                            : "every entry, as ranked by the host, since midpoints share entries");
-        each_entry(judge, host_.summed_height_table, registers_.height_table, static_cast<int>(table.columns),
-                   static_cast<int>(table.rows), [&](std::uint32_t x, std::uint32_t y, std::uint64_t entry) {
-                       const std::size_t k = std::size_t{y} * static_cast<std::size_t>(table.columns) + x;
-                       const auto field = [&](const char* name, int bits, const auto& given,
-                                              const std::vector<golden::EntryRange>& ranges) {
-                           if (bits == 0)
-                               return;
-                           const std::uint64_t value = entry & ((std::uint64_t{1} << bits) - 1);
-                           entry >>= bits;
-                           const golden::EntryRange range =
-                               derived ? ranges[k] : golden::EntryRange{number(given[k]), number(given[k])};
-                           judge.judge([&] { return fmt::format("({}, {}).{}", x, y, name); }, number(value), range.low,
-                                       {0, range.high - range.low});
-                       };
-                       const Job::Formats& formats = golden_.job().formats;
-                       field("rank", static_cast<int>(formats.rank_bits), table.ranks, ranks_.ranks);
-                       field("bound", static_cast<int>(formats.bound_bits), table.bounds, ranks_.bounds);
-                       field("radius", table.radii.empty() ? 0 : datapath::radius_bits, table.radii, ranks_.radii);
-                       judge.require(entry == 0, [&] { return fmt::format("({}, {}) has other bits", x, y); });
-                   });
-    }
-
-    void check_curvature_table() {
-        Judge judge(result_, "curvature table",
-                    "every quadratic and its rest, to nearest, in the smallest unit that fits");
-        const golden::CurvatureTable& table = golden::curvature_table(golden_.map());
-        std::vector<std::array<std::int64_t, 3>> cells;  // column, row, reach
-        for (std::int64_t reach = 2;; reach *= 2) {
-            const auto nearest = [&](std::int64_t texel) { return (texel + reach / 2) / reach; };
-            for (std::int64_t row = 0; row <= nearest(table.rows - 1); ++row)
-                for (std::int64_t column = 0; column <= nearest(table.columns - 1); ++column)
-                    cells.push_back({column * reach, row * reach, reach});
-            if (2 * reach >= std::max(table.columns, table.rows))
-                break;
-        }
-        each_entry(judge, host_.summed_height_table, registers_.height_table, static_cast<int>(cells.size()), 1,
-                   [&](std::uint32_t x, std::uint32_t, std::uint64_t entry) {
-                       const auto [column, row, reach] = cells[x];
-                       const golden::Curvature cell = golden::fit_curvature(golden_.map(), column, row, reach);
-                       const datapath::CurvatureEntry found = datapath::unpack_curvature(entry);
-                       const double unit = std::ldexp(1.0, found.exponent - datapath::curvature_fraction);
-                       constexpr double leeway = 0.02;  // of a unit, for sums of squares in doubles
-                       const auto field = [&](const char* name, double hardware, double golden) {
-                           judge.judge([&] { return fmt::format("{}.{}", x, name); }, hardware, golden / unit,
-                                       to_nearest, leeway);
-                       };
-                       field("xx", found.xx, cell.xx);
-                       field("xy", found.xy, cell.xy);
-                       field("yy", found.yy, cell.yy);
-                       field("rest", found.rest, cell.rest);
-                       const double largest = std::max({std::abs(cell.xx), std::abs(cell.xy), std::abs(cell.yy)});
-                       const double smaller = unit / 2;
-                       const bool fits = largest / smaller < 127.5 - leeway && cell.rest / smaller < 255.5 - leeway;
-                       judge.require(found.exponent == 0 || !fits,
-                                     [&] { return fmt::format("{}.unit = {}, and a smaller one fits", x, unit); });
-                   });
-    }
-
-    void check_mipmap_table() {
-        Judge judge(result_, "mipmap table", "every block's mean, to nearest, or maximum");
-        std::vector<double> blocks;
-        for (const std::vector<double>& level : golden::mipmap_levels(golden_.map()))
-            blocks.insert(blocks.end(), level.begin(), level.end());
-        each_entry(judge, host_.summed_height_table, registers_.height_table, static_cast<int>(blocks.size()), 1,
-                   [&](std::uint32_t x, std::uint32_t, std::uint64_t entry) {
-                       judge.judge([&] { return fmt::format("{}", x); }, number(entry), blocks[x], exact);
-                   });
-    }
-
     const Registers& registers_;
     const GoldenJob& golden_;
-    const golden::DerivedRanks& ranks_;
     Host& host_;
     SetupResult& result_;
 };
 
 }  // namespace
 
-golden::DerivedRanks derived_ranks(const MachineSetup& setup, const GoldenJob& golden, SetupResult& result) {
-    const golden::Map& map = golden.map();
-    if (!golden::has<golden::RankTest>(map) && !golden::has<golden::CurvatureTest>(map))
-        return {};
-    golden::RankSource source;
-    const datapath::Formats& formats = setup.registers.formats;
-    const double step = std::ldexp(1.0, -formats.texture.fraction);
+void judge_layout(Judge& judge, const char* name, const TableLayout& table, double columns, double rows,
+                  int entry_bits) {
+    judge.judge([&] { return fmt::format("{}.columns", name); }, table.columns, columns, exact);
+    judge.judge([&] { return fmt::format("{}.rows", name); }, table.rows, rows, exact);
+    judge.judge([&] { return fmt::format("{}.entry_bytes", name); }, table.entry_bytes, number((entry_bits + 7) / 8),
+                exact);
+}
+
+std::vector<std::array<glm::dvec2, 3>> base_texels(const MachineSetup& setup, const GoldenJob& golden,
+                                                   const SetupResult& result) {
+    const double step = std::ldexp(1.0, -setup.registers.formats.texture.fraction);
+    std::vector<std::array<glm::dvec2, 3>> base;
+    for (const std::uint32_t triangle : result.base_triangles) {
+        auto& corners = base.emplace_back();
+        for (std::size_t k = 0; k < 3; ++k)
+            corners[k] = golden::on_grid(golden.vertex(triangle, k).texture, step);
+    }
+    return base;
+}
+
+void judge_extent(Judge& judge, const std::vector<std::array<glm::dvec2, 3>>& base, const golden::Map& map,
+                  std::int64_t columns, std::int64_t rows) {
     glm::dvec2 covered(map.width(), map.height());
-    for (const std::uint32_t number : result.base_triangles) {
-        auto& corners = source.base.emplace_back();
-        for (std::size_t k = 0; k < 3; ++k) {
-            corners[k] = golden::on_grid(golden.vertex(number, k).texture, step);
-            const glm::dvec2 reached = glm::floor(corners[k]) + 1.0;
+    for (const auto& corners : base)
+        for (const glm::dvec2& corner : corners) {
+            const glm::dvec2 reached = glm::floor(corner) + 1.0;
             if (map.address_u() == golden::AddressMode::clamp)
                 covered.x = std::max(covered.x, reached.x);
             if (map.address_v() == golden::AddressMode::clamp)
                 covered.y = std::max(covered.y, reached.y);
         }
-    }
-    Judge judge(result, "table's extent", "texels that the base mesh covers; the order of bisections");
-    const golden::RankTable& table = golden::rank_table(map);
-    judge.judge("columns",
-                number(golden::has<golden::RankTest>(map) ? table.columns : golden::curvature_table(map).columns),
-                covered.x, exact);
-    judge.judge("rows", number(golden::has<golden::RankTest>(map) ? table.rows : golden::curvature_table(map).rows),
-                covered.y, exact);
-    source.columns = table.columns;
-    source.rows = table.rows;
-    source.midpoints = table.midpoints;
-    std::vector<std::size_t> sorted;
-    for (const glm::dvec2& midpoint : source.midpoints)
-        sorted.push_back(source.entry(midpoint));
-    std::sort(sorted.begin(), sorted.end());
-    if (!golden::has<golden::RankTest>(map) || std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end())
-        return {};
-    source.rank_bits = golden.scene().rank_bits;
-    source.bound_bits = golden.scene().bound_bits;
-    const auto entries = static_cast<std::size_t>(source.columns * source.rows);
-    judge.require(sorted.empty() || sorted.back() < entries,
-                  [] { return std::string("a bisection beyond the table"); });
-    if (!sorted.empty() && sorted.back() >= entries)
-        return {};
-    if (golden.scene().rank_view != golden::RankView::none && source.bound_bits > 0) {
-        const double last_place = std::ldexp(1.0, -formats.view_distance.fraction);
-        source.radii = true;
-        source.steps = glm::dvec3(golden.texel_size(), std::abs(golden.parameters().scale)) / last_place;
-        source.rounding = 4 + 32 * std::sqrt(3.0) * std::ldexp(1.0, -formats.position.fraction) / last_place;
-    }
-    golden::DerivedRanks ranks = golden::derive_ranks(map, source);
-    judge.require(ranks.fault.empty(), [&] { return ranks.fault; });
-    if (source.bound_bits > 0 && ranks.fault.empty())
-        judge.judge("highest_bound_threshold", table.highest_bound_threshold, ranks.highest_bound_threshold.low,
-                    {0, ranks.highest_bound_threshold.high - ranks.highest_bound_threshold.low});
-    return ranks;
+    judge.judge("columns", number(columns), covered.x, exact);
+    judge.judge("rows", number(rows), covered.y, exact);
 }
 
-void check_tables(const MachineSetup& setup, const GoldenJob& golden, const golden::DerivedRanks& ranks, Host& host,
-                  SetupResult& result) {
-    TableCheck(setup, golden, ranks, host, result).run();
+void each_entry(Judge& judge, tlm_utils::simple_initiator_socket<Host>& socket, const TableLayout& layout,
+                double columns, double rows,
+                const std::function<void(std::uint32_t x, std::uint32_t y, std::uint64_t entry)>& check) {
+    // A wrong layout has already been reported with the registers.
+    if (layout.columns != columns || layout.rows != rows || layout.entry_bytes > 8)
+        return;
+    TableReader table(socket, layout);
+    for (std::uint32_t y = 0; y < layout.rows; ++y) {
+        const bool there = table.read_row(y);
+        if (!there) {
+            judge.require(false, [&] { return fmt::format("row {} is not in the memory", y); });
+            return;
+        }
+        for (std::uint32_t x = 0; x < layout.columns; ++x)
+            check(x, y, table.entry(x));
+    }
+}
+
+void check_maps(const MachineSetup& setup, const GoldenJob& golden, Host& host, SetupResult& result) {
+    MapCheck(setup, golden, host, result).run();
 }
 
 }  // namespace tessera::setup_check

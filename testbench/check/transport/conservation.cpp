@@ -198,14 +198,14 @@ void add_timed(Equations& list, const MachineSetup& setup, const HostedMachine& 
         list.add("requests to displacement_map_for_tests = edges tested by codes", items(*second_side), by_codes);
     }
     list.add("entries of normal_map = read", normal_map.entries(), p.normal_map_reads());
-    list.add("entries of " + std::string(height_test.table) + " = read by its test", height_table.entries(),
+    list.add("entries of " + height_test.table() + " = read by its test", height_table.entries(),
              p.height_table_reads());
     for (const Read& read : {displacement_map, normal_map, height_table})
         read.add_fills(list);
     list.add("requests to normal_map = vertices and edges of normal_test", normal_map.requests(),
              normal_map_requests(p, vertices, normal));
-    const std::uint64_t asked = height_test.functions->requests * (summed_height - by_codes - off_lattice);
-    list.add("requests to " + std::string(height_test.table) + " = those of each edge tested by table",
+    const std::uint64_t asked = height_test.requests * (summed_height - by_codes - off_lattice);
+    list.add("requests to " + height_test.table() + " = those of each edge tested by table",
              height_table.requests(), setup.registers.tests.summed_height_test ? asked : 0);
 
     list.add("triangles spilled = refilled", p.triangle_queue.spilled(), p.triangle_queue.refilled());

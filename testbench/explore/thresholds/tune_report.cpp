@@ -74,7 +74,7 @@ std::string tune_text(const TuneRequest& request, const TuneResult& result, cons
                       const ErrorUnit& unit) {
     const Job::Tests& tests = result.point.tests;
     std::string text;
-    const auto row = [&](const char* name, const std::string& value) {
+    const auto row = [&](const std::string& name, const std::string& value) {
         text += fmt::format("  {:<24}{}\n", name, value);
     };
     text += fmt::format("tessera tune: {}\n", goal_text(request, unit));

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <stdexcept>
 
+#include "golden/height_tests/summed_height_test.h"
 #include "testbench/check/conformance/golden_inputs.h"
 #include "testbench/setup/map_displacement.h"
 #include "testbench/setup/mesh/whole_periods.h"
@@ -77,7 +79,8 @@ ExactModel::ExactModel(const Job& job, const BaseMesh& original, const HeightMap
     parameters_.bias = displacement.of(map.range_low) * model_scale_.scale;
     const Job::Tests& tests = job.tests;
     parameters_.normal_threshold = tests.normal_threshold;
-    parameters_.summed_height_threshold = tests.threshold("summed_height_threshold") * highest;
+    map_.set_height_test(std::make_shared<golden::SummedHeightTest>(
+        tests.threshold("summed_height_threshold") * highest, tests.summed_height_unit == SummedHeightUnit::area));
     parameters_.view_threshold = tests.view_threshold;
     parameters_.highlight_cosine = std::cos(tests.highlight_angle * pi / 180);
     parameters_.highlight_normal_threshold = tests.highlight_normal_threshold;

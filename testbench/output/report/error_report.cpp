@@ -10,14 +10,14 @@ namespace tessera {
 
 namespace {
 
-const char* height_test_of(const Job& job) {
+std::string height_test_of(const Job& job) {
     return functions_of(job.hardware.height_test).title();
 }
 
 /// The job's tests that request splits.
 std::string requesting_tests(const Job& job) {
     std::string text;
-    const auto add = [&](bool on, const char* name) {
+    const auto add = [&](bool on, const std::string& name) {
         if (on)
             text += (text.empty() ? "" : " nor ") + std::string(name);
     };
@@ -29,7 +29,7 @@ std::string requesting_tests(const Job& job) {
 
 std::string why_whole(const Job& job, unsigned stopped_by) {
     std::string text;
-    const auto add = [&](unsigned bit, const char* name) {
+    const auto add = [&](unsigned bit, const std::string& name) {
         if ((stopped_by & bit) != 0)
             text += (text.empty() ? "" : ", ") + std::string(name);
     };

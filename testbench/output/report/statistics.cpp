@@ -64,7 +64,7 @@ void stream_figures(std::vector<Figure>& all, const MachineSetup& setup) {
     });
 }
 
-void memory_figures(std::vector<Figure>& all, const char* name, const datapath::TableLayout& table, std::uint64_t reads,
+void memory_figures(std::vector<Figure>& all, const std::string& name, const datapath::TableLayout& table, std::uint64_t reads,
                     std::uint64_t edges) {
     FigureGroup c(all, name);
     c.add("size", table.bytes(), "byte", "the whole table");
@@ -74,7 +74,7 @@ void memory_figures(std::vector<Figure>& all, const char* name, const datapath::
     c.add("reads_per_edge", ratio(reads, edges), "entry/edge", "entries read per edge tested");
 }
 
-void cache_figures(std::vector<Figure>& all, const char* name, const Simulation& simulation,
+void cache_figures(std::vector<Figure>& all, const std::string& name, const Simulation& simulation,
                    const std::unique_ptr<TableCache> Pipeline::*cache, std::uint64_t finished) {
     std::uint64_t hits = 0, fills = 0, entries = 0, bytes = 0;
     for (const auto& machine : simulation.machines) {

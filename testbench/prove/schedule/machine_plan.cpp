@@ -78,7 +78,7 @@ Plan plan_of(const tessera::Pipeline& machine, const Rasteriser& rasteriser, con
     plan.normal_map = table_plan(machine.normal_map, t.normal_map, t.stalls, registers.normal_map, bumped);
     plan.height_table =
         table_plan(machine.height_table, height_table_timing(t, registers.formats), t.stalls, registers.height_table,
-                   kind.functions->requests * plan.tests.height_test.pipeline.stages + 1);
+                   functions_of(registers.formats.height_test).requests * plan.tests.height_test.pipeline.stages + 1);
     return plan;
 }
 

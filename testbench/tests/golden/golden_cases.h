@@ -3,11 +3,13 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <random>
 #include <utility>
 #include <vector>
 
 #include "golden/golden_model.h"
+#include "golden/height_tests/summed_height_test.h"
 
 /// Maps of all shapes, and random numbers to fill them, for the golden model's tests.
 namespace tessera::golden::testing {
@@ -42,6 +44,10 @@ inline std::vector<double> random_codes(int width, int height, Random& random) {
     for (double& code : codes)
         code = static_cast<double>(random.integer(0, 65535));
     return codes;
+}
+
+inline void set_summed_height(Map& map, double threshold, bool area = false) {
+    map.set_height_test(std::make_shared<SummedHeightTest>(threshold, area));
 }
 
 inline const std::array<AddressMode, 2> both_modes{AddressMode::clamp, AddressMode::repeat};

@@ -78,18 +78,18 @@ TEST_CASE("edge: each test decides operands worked out by hand") {
     SECTION("summed height, strictly greater, and the area option") {
         p.enabled.normal = false;
         const Vertex i = vertex(4.5, 4.5), j = vertex(12.5, 4.5);  // rectangles of 4 x 1; only r_ij contains the peak
-        p.summed_height_threshold = 49;                            // |100/2 - 0| > 49
+        set_summed_height(map, 49);                                // |100/2 - 0| > 49
         EdgeEvaluation e = evaluate_edge(i, j, map, p);
         CHECK(e.rectangle_width == 4);
         CHECK(e.rectangle_height == 1);
         CHECK(e.height == 200);
         CHECK(e.summed_height_test);
         CHECK(e.split);
-        p.summed_height_threshold = 50;
+        set_summed_height(map, 50);
         CHECK_FALSE(evaluate_edge(i, j, map, p).summed_height_test);
-        p.area = true;
+        set_summed_height(map, 50, true);
         CHECK_FALSE(evaluate_edge(i, j, map, p).summed_height_test);  // 200 > 50 * 4
-        p.summed_height_threshold = 49;
+        set_summed_height(map, 49, true);
         e = evaluate_edge(i, j, map, p);
         CHECK(e.height_limit == 196);
         CHECK(e.summed_height_test);
@@ -160,11 +160,11 @@ TEST_CASE("edge: each test decides operands worked out by hand") {
         no.generation_limit = 0;
         CHECK_FALSE(evaluate_edge(i, j, map, no).split);
         no = p;
-        no.normal_threshold = no.summed_height_threshold = 1e9;
-        CHECK_FALSE(evaluate_edge(i, j, map, no).split);
-        no = p;
         no.normal_threshold = -1;  // always true, so that only TCT can prevent the split
         CHECK_FALSE(evaluate_edge(vertex(4.1, 4.1), vertex(4.2, 4.9), map, no).split);
+        no.normal_threshold = 1e9;
+        set_summed_height(map, 1e9);
+        CHECK_FALSE(evaluate_edge(i, j, map, no).split);
     }
 }
 
@@ -250,9 +250,9 @@ TEST_CASE("edge: (i,j) and (j,i) are decided alike, bit for bit") {
                 p.row_x = {random.real(-9, 9), random.real(-9, 9), random.real(-9, 9), 1};
                 p.row_w = {0, 0, random.real(0, 1), random.real(0, 9)};
                 p.normal_threshold = random.real(0, 2);
-                p.summed_height_threshold = random.real(0, 1e5);
+                const double threshold = random.real(0, 1e5);
                 p.view_threshold = random.real(0, 30);
-                p.area = random.integer(0, 1) == 0;
+                set_summed_height(map, threshold, random.integer(0, 1) == 0);
                 Vertex i = complete_base_vertex(random_vertex(random, -9, width, 0, height), map, p);
                 Vertex j = complete_base_vertex(random_vertex(random, 0, width, 0, height), map, p);
                 i.generation = static_cast<int>(random.integer(0, 13));
@@ -293,8 +293,7 @@ TEST_CASE("edge: thresholds as the viewer sees them equal those worked out by ha
 
     Map map(8, 8, AddressMode::clamp, AddressMode::clamp, std::vector<double>(64, 0));
     Parameters parameters;
-    parameters.rank_view = RankView::per_point;
-    parameters.rank_bits = parameters.bound_bits = 16;
+    RankSettings settings{1000, 60000, 16, 16, RankView::per_point};
     parameters.distance_step = 0.25;
     parameters.eye = {0, 0, -8};
     parameters.enabled = {false, true, false, false, false, false};
@@ -304,27 +303,26 @@ TEST_CASE("edge: thresholds as the viewer sees them equal those worked out by ha
     i.texture = {0.5, 0.5};
     j.texture = {2.5, 0.5};
     const auto asks = [&](std::uint16_t rank, std::uint16_t bound, std::uint8_t radius) {
-        map.set_height_test(std::make_shared<RankTest>(RankTable{8,
-                                                                 8,
-                                                                 std::vector<std::uint16_t>(64, rank),
-                                                                 std::vector<std::uint16_t>(64, bound),
-                                                                 std::vector<std::uint8_t>(64, radius),
-                                                                 0,
-                                                                 {}}));
+        const RankTable table{8,
+                              8,
+                              std::vector<std::uint16_t>(64, rank),
+                              std::vector<std::uint16_t>(64, bound),
+                              std::vector<std::uint8_t>(64, radius),
+                              0,
+                              {}};
+        map.set_height_test(std::make_shared<RankTest>(table, settings));
         return evaluate_edge(complete_base_vertex(i, map, parameters), complete_base_vertex(j, map, parameters), map,
                              parameters)
             .summed_height_test;
     };
     // Both ends are at distance 8: three octaves, of 2 x 1024 for a rank, 2048 for a bound.
-    parameters.rank_threshold = 1000;
-    parameters.bound_threshold = 60000;
     CHECK_FALSE(asks(1000 + 3 * 2048, 0, 0));
     CHECK(asks(1001 + 3 * 2048, 0, 0));
-    parameters.rank_view = RankView::per_pixel;
+    settings.view = RankView::per_pixel;
     CHECK_FALSE(asks(1000 + 3 * 4096, 0, 0));
     CHECK(asks(1001 + 3 * 4096, 0, 0));
     // A radius of 8 x 4 half steps: 4 of the distance 8.
-    parameters.bound_threshold = 500;
+    settings.bound_threshold = 500;
     CHECK_FALSE(asks(0, 500 + 2 * 2048, 16));
     CHECK(asks(0, 501 + 2 * 2048, 16));
     CHECK(asks(0, 1, 24));  // radius 8: the eye lies in the sphere

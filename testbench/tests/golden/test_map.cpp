@@ -154,7 +154,7 @@ TEST_CASE("map: the Curvature Table's nearest cell is read at each level, the hi
     for (const auto& [columns, rows] : cells)
         for (int k = 0; k < columns * rows; ++k)
             table.cells.push_back({static_cast<double>(table.cells.size()), 0, 0, 0, 1});
-    const CurvatureTest test(table);
+    const CurvatureTest test(table, 0);
     int first = 0;
     for (int level = 2; level <= 5; ++level) {
         const auto [columns, rows] = cells[static_cast<std::size_t>(level - 2)];
@@ -187,13 +187,13 @@ TEST_CASE("map: other heights replace the displacement map and nothing else") {
 
 TEST_CASE("map: a mipmap's blocks, clipped at the border, hold means rounded to nearest, or maxima") {
     Map map(3, 2, AddressMode::clamp, AddressMode::repeat, {1, 2, 9, 4, 4, 6});
-    const MipmapTest means(map, MipmapFilter::mean);
+    const MipmapTest means(map, MipmapFilter::mean, 0);
     using Levels = MipmapTest::Levels;
     CHECK(means.levels() == Levels{{1, 2, 9, 4, 4, 6}, {3, 8}, {4}});  // 11/4, 15/2 upwards, 26/6
     CHECK(means.height({5, 2.5}, 0, map) == 9);
     CHECK(means.height({1.9, 1}, 1, map) == 3);
     CHECK(means.height({2, 3}, 1, map) == 8);
-    CHECK(MipmapTest(map, MipmapFilter::maximum).levels() == Levels{{1, 2, 9, 4, 4, 6}, {4, 9}, {9}});
+    CHECK(MipmapTest(map, MipmapFilter::maximum, 0).levels() == Levels{{1, 2, 9, 4, 4, 6}, {4, 9}, {9}});
 }
 
 TEST_CASE("normal map: normals are central differences, also at borders and on thin axes") {

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "golden/golden_setup.h"
+#include "golden/height_tests/rank_test.h"
 
 using namespace tessera::golden;
 
@@ -83,7 +84,7 @@ TEST_CASE("unit vectors are made from vectors of any length") {
     CHECK(unit({0, 0, 0}) == glm::dvec3(0));
 }
 
-TEST_CASE("parameters: displacement is in world units, thresholds are in codes and cosines") {
+TEST_CASE("parameters: displacement is in world units, thresholds are cosines") {
     Scene scene;
     scene.camera = straight_down();
     scene.placement.scale = 8;
@@ -91,7 +92,6 @@ TEST_CASE("parameters: displacement is in world units, thresholds are in codes a
     scene.highest = 1.5;
     scene.highest_code = 4;
     scene.normal_threshold = 0.25;
-    scene.summed_height_threshold = 3;
     scene.view_threshold = 7;
     scene.generation_limit = 9;
     scene.highlight_angle = 60;
@@ -101,7 +101,6 @@ TEST_CASE("parameters: displacement is in world units, thresholds are in codes a
     CHECK(p.scale == 4);  // 8 * 2 / 4
     CHECK(p.bias == -4);  // 8 * -0.5
     CHECK(p.normal_threshold == 0.25);
-    CHECK(p.summed_height_threshold == 12);
     CHECK(p.view_threshold == 7);
     CHECK(p.generation_limit == 9);
     CHECK(p.highlight_cosine == Approx(0.5));
@@ -111,33 +110,27 @@ TEST_CASE("parameters: displacement is in world units, thresholds are in codes a
     CHECK(p.texture_step == 0);
 }
 
-TEST_CASE("parameters: the Rank Test's thresholds are in pixels at distance 1") {
+TEST_CASE("settings: the Rank Test's thresholds are in pixels at distance 1") {
     Scene scene;
     scene.camera = straight_down();  // 50 pixels are 1 high at distance 1; the tangent to a corner is the root of 5
     scene.placement.scale = 8;
     scene.lowest = 0;
     scene.highest = 2;
-    scene.highest_code = 4;  // a code is 4 high
-    scene.rank_bits = scene.bound_bits = 8;
-    scene.rank_view = RankView::per_point;
-    scene.rank_threshold = 400;  // 2 codes
-    CHECK(rank_threshold(scene) == Approx(18 * 1024));
-    scene.rank_view = RankView::per_pixel;
+    scene.highest_code = 4;                                 // a code is 4 high
+    RankSettings asked{400, 0, 8, 8, RankView::per_point};  // 2 codes
+    CHECK(on_scales(asked, scene, 0).rank_threshold == Approx(18 * 1024));
     scene.texel_area = 0.25;  // a texel is 25 pixels wide
-    scene.rank_threshold = 10000;
-    CHECK(rank_threshold(scene) == Approx(18 * 1024));
-    scene.bound_threshold = 50 * std::sqrt(6.0);
-    CHECK(bound_threshold(scene) == Approx((8 + std::log2(1 / (8 * std::sqrt(6.0)))) * 2048));
-    const Parameters p = make_parameters(scene);
-    CHECK(p.rank_view == RankView::per_pixel);
-    CHECK(p.eye == glm::dvec3(0, 0, 40));
-    CHECK(p.rank_threshold == 18 * 1024);
-    scene.rank_threshold = 0;
-    CHECK(make_parameters(scene).rank_threshold == -(1 << 20));
+    asked = {10000, 50 * std::sqrt(6.0), 8, 8, RankView::per_pixel};
+    CHECK(on_scales(asked, scene, 0).rank_threshold == Approx(18 * 1024));
+    CHECK(on_scales(asked, scene, 0).bound_threshold == Approx((8 + std::log2(1 / (8 * std::sqrt(6.0)))) * 2048));
+    CHECK(on_scales(asked, scene, 0).view == RankView::per_pixel);
+    CHECK(make_parameters(scene).eye == glm::dvec3(0, 0, 40));
+    asked.rank_threshold = 0;
+    CHECK(on_scales(asked, scene, 0).rank_threshold == -(1 << 20));
     scene.placement.scale = 0;  // no error is visible: 0 of 0
-    CHECK(make_parameters(scene).rank_threshold == -(1 << 20));
-    scene.rank_view = RankView::none;
-    CHECK(rank_threshold(scene) == 0);
+    CHECK(on_scales(asked, scene, 0).rank_threshold == -(1 << 20));
+    asked.view = RankView::none;
+    CHECK(on_scales(asked, scene, 0).rank_threshold == 0);
 }
 
 TEST_CASE("half vector and light are in the viewer's coordinates") {

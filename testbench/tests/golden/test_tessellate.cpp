@@ -153,13 +153,13 @@ TEST_CASE("subdivision: with two split edges there are three choices of diagonal
 }
 
 TEST_CASE("half donut on the plane of 18: it ends, without T-vertices, with the same area") {
-    const Map map = half_donut(0.55, 0.25);
+    Map map = half_donut(0.55, 0.25);
+    set_summed_height(map, 5000);
     const std::vector<std::array<Vertex, 3>> base = plane_18();
     for (const Diagonal diagonal : {Diagonal::shorter, Diagonal::first, Diagonal::second}) {
         Parameters p;
         p.scale = 0.25 / 65535;
         p.normal_threshold = 0.2;
-        p.summed_height_threshold = 5000;
         p.enabled.view = false;
         p.diagonal = diagonal;
         using Key = std::pair<double, double>;
@@ -195,11 +195,11 @@ TEST_CASE("half donut on the plane of 18: it ends, without T-vertices, with the 
 
 TEST_CASE("the printed algorithm's endless case ends with the Generation Test") {
     // ALGORITHM.md 4.5: the long edge never splits; the third vertex alternates between points one third along it.
-    const Map map = half_donut(0.6, 0.25);
+    Map map = half_donut(0.6, 0.25);
+    set_summed_height(map, 200);
     Parameters p;
     p.scale = 0.25 / 65535;
     p.normal_threshold = 0.1;
-    p.summed_height_threshold = 200;
     p.enabled.view = false;
     const std::array<Vertex, 3> triangle{plane_vertex(to_grid(78.667), 36),
                                          plane_vertex(to_grid(82.667), to_grid(34.667)), plane_vertex(80, 37)};
@@ -225,10 +225,10 @@ TEST_CASE("the printed algorithm's endless case ends with the Generation Test") 
 }
 
 TEST_CASE("tessellate: the bound is exact, no triangle is lost, base triangles keep their order") {
-    const Map map = half_donut(0.55, 0.25);
+    Map map = half_donut(0.55, 0.25);
+    set_summed_height(map, 1e6);
     Parameters p;
     p.normal_threshold = 0.3;
-    p.summed_height_threshold = 1e6;
     p.enabled.view = false;
     std::vector<std::size_t> order;
     const auto note = [&](const Triangle& t) { order.push_back(t.base_index); };
@@ -264,10 +264,10 @@ TEST_CASE("cylinder: the seam is closed in repeat and open in clamp") {
     const std::vector<double> codes = random_codes(width, height, random);
     for (const AddressMode mode : both_modes) {
         Map map(width, height, mode, AddressMode::clamp, codes);
+        set_summed_height(map, 20000);
         Parameters p;
         p.scale = 0.2 / 65535;
         p.normal_threshold = 0.3;
-        p.summed_height_threshold = 20000;
         p.enabled.view = false;
         p.generation_limit = 6;
         map.derive_normals(p.scale, {4 * std::acos(-1.0) / width, double(up) / height});

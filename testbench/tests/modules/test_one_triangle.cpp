@@ -189,7 +189,7 @@ TEST_CASE("the paper's design: latency, interval and buffer of every unit and me
                                 {"transform", t.transform, 20, 1},
                                 {"calculate_new_u", t.calculate_new_u, 1, 1},
                                 {"tex_coord_test", t.tex_coord_test, 1, 1},
-                                {"summed_height_test", t.summed_height_test, 3, 1},
+                                {"height_test", height_test_timing(t, {}), 3, 1},
                                 {"normal_test", t.normal_test, 9, 1},
                                 {"view_test", t.view_test, 1, 1},
                                 {"pass_or_tessellate", t.pass_or_tessellate, 1, 8},

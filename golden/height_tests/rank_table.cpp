@@ -1,4 +1,4 @@
-#include "golden/golden_ranks.h"
+#include "golden/height_tests/rank_table.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,49 @@
+#pragma once
+#include <array>
+#include <functional>
+#include <memory>
+
+#include "golden/height_tests/height_test.h"
+#include "testbench/check/conformance/golden_job.h"
+#include "testbench/check/conformance/setup_judge.h"
+#include "testbench/machine/machine_setup.h"
+
+namespace tessera {
+
+/// The check's part of a height test: golden's counterpart, made in two ways, and their comparison.
+class HeightTestCheck {
+  public:
+    using Golden = std::shared_ptr<const golden::HeightTest>;
+    /// Compares the table in one machine's memory with golden's.
+    using TableCheck = std::function<void(Host&)>;
+
+    HeightTestCheck() = default;
+    virtual ~HeightTestCheck() = default;
+    HeightTestCheck(const HeightTestCheck&) = delete;
+    HeightTestCheck& operator=(const HeightTestCheck&) = delete;
+
+    /// From the registers and the host's table, dequantised.
+    virtual Golden of_machine(const MachineSetup& setup, const golden::Map& map) const = 0;
+    /// From the job, without the registers. tables: what golden takes as given.
+    virtual Golden of_job(const GoldenJob& golden, const PreparedScene& tables) const = 0;
+
+    virtual void check_thresholds(const datapath::Registers& registers, const GoldenJob& golden,
+                                  setup_check::Judge& judge) const = 0;
+    /// The table's size.
+    virtual void check_layout(const datapath::Registers& registers, const GoldenJob& golden,
+                              setup_check::Judge& judge) const = 0;
+    /// Checks what the table is made from. The result refers to the arguments.
+    virtual TableCheck table_check(const MachineSetup& setup, const GoldenJob& golden, SetupResult& result) const = 0;
+};
+
+/// One each, in files of their names.
+const HeightTestCheck& summed_height_check();
+const HeightTestCheck& rank_check();
+const HeightTestCheck& curvature_check();
+const HeightTestCheck& mipmap_check();
+
+/// In the order of datapath::HeightTest.
+const std::array<const HeightTestCheck*, 4>& height_test_checks();
+const HeightTestCheck& check_of(datapath::HeightTest test);
+
+}  // namespace tessera
