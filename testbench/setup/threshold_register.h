@@ -20,7 +20,7 @@ struct ThresholdToRegister {
 
 /// Rounds down. Refuses a value that does not fit, and one that would become 0 although it is not: a test against 0 has
 /// a different meaning, and its result depends on rounding.
-inline std::uint64_t to_register(const ThresholdToRegister& threshold) {
+inline std::int64_t to_register(const ThresholdToRegister& threshold) {
     const double fixed = std::floor(threshold.value * threshold.scale);
     if (fixed > threshold.limit)
         throw InputError(fmt::format("{} = {} does not fit its register; the largest is {}", threshold.key,
@@ -30,7 +30,7 @@ inline std::uint64_t to_register(const ThresholdToRegister& threshold) {
             fmt::format("{} = {} is less than one step of its register, {}, and would be 0 there: set it to 0, or at "
                         "least to that step, or raise {}",
                         threshold.key, threshold.value, 1 / threshold.scale, threshold.format_key));
-    return static_cast<std::uint64_t>(fixed);
+    return static_cast<std::int64_t>(fixed);
 }
 
 }  // namespace tessera

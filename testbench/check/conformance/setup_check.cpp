@@ -216,8 +216,8 @@ class RegisterCheck {
         const auto declared = functions_of(job_.hardware.height_test).thresholds(formats_);
         for (std::size_t k = 0; k < declared.size(); ++k)
             if (declared[k].bits == 0)
-                judge_.judge([&] { return indexed("tests.height_thresholds", k); },
-                             number(tests.height_thresholds[k]), 0, exact);
+                judge_.judge([&] { return indexed("tests.height_thresholds", k); }, number(tests.height_thresholds[k]),
+                             0, exact);
         judge_.judge("tests.view_threshold", tests.view_threshold,
                      golden.view_threshold * lsb_per_unit(formats_.screen), rounded_down);
         flag("tests.generation_limit", tests.generation_limit, golden.generation_limit);

@@ -205,8 +205,8 @@ void add_timed(Equations& list, const MachineSetup& setup, const HostedMachine& 
     list.add("requests to normal_map = vertices and edges of normal_test", normal_map.requests(),
              normal_map_requests(p, vertices, normal));
     const std::uint64_t asked = height_test.requests * (summed_height - by_codes - off_lattice);
-    list.add("requests to " + height_test.table() + " = those of each edge tested by table",
-             height_table.requests(), setup.registers.tests.summed_height_test ? asked : 0);
+    list.add("requests to " + height_test.table() + " = those of each edge tested by table", height_table.requests(),
+             setup.registers.tests.summed_height_test ? asked : 0);
 
     list.add("triangles spilled = refilled", p.triangle_queue.spilled(), p.triangle_queue.refilled());
     list.add("requests to off_chip_memory = spills and refills", items(p.off_chip_memory),

@@ -64,8 +64,8 @@ void stream_figures(std::vector<Figure>& all, const MachineSetup& setup) {
     });
 }
 
-void memory_figures(std::vector<Figure>& all, const std::string& name, const datapath::TableLayout& table, std::uint64_t reads,
-                    std::uint64_t edges) {
+void memory_figures(std::vector<Figure>& all, const std::string& name, const datapath::TableLayout& table,
+                    std::uint64_t reads, std::uint64_t edges) {
     FigureGroup c(all, name);
     c.add("size", table.bytes(), "byte", "the whole table");
     c.add("entry", table.entry_bytes, "byte", "one entry");

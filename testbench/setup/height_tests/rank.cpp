@@ -73,13 +73,14 @@ class RankHost : public HeightTestHost {
         registers.rank_per_pixel = formats.distances && tests.rank_view == RankView::per_pixel;
         if (formats.rank_bits > 0)
             registers.height_thresholds[datapath::rank_number] =
-                formats.distances
-                    ? std::int64_t{seen_rank_threshold(tests.threshold("rank_threshold"), registers.rank_per_pixel, view)}
-                    : rank_threshold(tests.threshold("rank_threshold") * highest_code, formats.rank_bits);
+                formats.distances ? std::int64_t{seen_rank_threshold(tests.threshold("rank_threshold"),
+                                                                     registers.rank_per_pixel, view)}
+                                  : rank_threshold(tests.threshold("rank_threshold") * highest_code, formats.rank_bits);
         if (formats.bound_bits > 0)
             registers.height_thresholds[datapath::bound_number] =
-                formats.distances ? std::int64_t{seen_bound_threshold(tests.threshold("bound_threshold"), view)}
-                                  : bound_threshold(tests.threshold("bound_threshold") * highest_code, formats.bound_bits);
+                formats.distances
+                    ? std::int64_t{seen_bound_threshold(tests.threshold("bound_threshold"), view)}
+                    : bound_threshold(tests.threshold("bound_threshold") * highest_code, formats.bound_bits);
     }
     void make_table(const TestSettings&, const std::vector<TextureTriangle>& base,
                     PreparedScene& scene) const override {

@@ -24,8 +24,8 @@ class SummedHeightHost : public HeightTestHost {
                         datapath::TestParameters& registers) const override {
         const bool area = tests.summed_height_unit == datapath::SummedHeightUnit::area;
         registers.height_thresholds[0] =
-            to_register({"tests.summed_height_threshold", tests.threshold("summed_height_threshold"), tests.summed_height,
-                         static_cast<double>(formats.displacement.highest) * (area ? 1 : 4),
+            to_register({"tests.summed_height_threshold", tests.threshold("summed_height_threshold"),
+                         tests.summed_height, static_cast<double>(formats.displacement.highest) * (area ? 1 : 4),
                          area ? std::ldexp(1.0, 18) : std::ldexp(1.0, 50), "formats.displacement_bits"});
     }
     void write_table(const PreparedScene& scene, const TableSink& sink) const override {

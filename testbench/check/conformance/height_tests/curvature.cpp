@@ -36,7 +36,8 @@ class CurvatureCheck : public HeightTestCheck {
                        std::ldexp(number(setup.registers.tests.height_thresholds[0]), -datapath::curvature_fraction));
     }
     Golden of_job(const GoldenJob& golden, const PreparedScene& tables) const override {
-        return test_of(tables.curvature_table, golden.job().tests.threshold("curvature_threshold") * golden.scene().highest_code);
+        return test_of(tables.curvature_table,
+                       golden.job().tests.threshold("curvature_threshold") * golden.scene().highest_code);
     }
 
     void check_thresholds(const datapath::Registers& registers, const GoldenJob& golden, Judge& judge) const override {

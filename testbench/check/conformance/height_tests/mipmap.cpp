@@ -27,12 +27,14 @@ std::vector<double> blocks_of(const golden::Map& map) {
 class MipmapCheck : public HeightTestCheck {
   public:
     Golden of_machine(const MachineSetup& setup, const golden::Map& map) const override {
-        return test_of(map, setup.mipmap_table.filter, std::ldexp(number(setup.registers.tests.height_thresholds[0]), -1));
+        return test_of(map, setup.mipmap_table.filter,
+                       std::ldexp(number(setup.registers.tests.height_thresholds[0]), -1));
     }
     /// The filter as the job has it, not as the host.
     Golden of_job(const GoldenJob& golden, const PreparedScene&) const override {
         const TestSettings& tests = golden.job().tests;
-        return test_of(golden.map(), tests.mipmap_filter, tests.threshold("mipmap_threshold") * golden.scene().highest_code);
+        return test_of(golden.map(), tests.mipmap_filter,
+                       tests.threshold("mipmap_threshold") * golden.scene().highest_code);
     }
 
     void check_thresholds(const datapath::Registers& registers, const GoldenJob& golden, Judge& judge) const override {

@@ -106,7 +106,8 @@ class RankCheck : public HeightTestCheck {
     Golden of_machine(const MachineSetup& setup, const golden::Map&) const override {
         const datapath::Formats& formats = setup.registers.formats;
         const datapath::TestParameters& tests = setup.registers.tests;
-        golden::RankSettings settings{number(tests.height_thresholds[datapath::rank_number]), number(tests.height_thresholds[datapath::bound_number]), formats.rank_bits,
+        golden::RankSettings settings{number(tests.height_thresholds[datapath::rank_number]),
+                                      number(tests.height_thresholds[datapath::bound_number]), formats.rank_bits,
                                       formats.bound_bits, golden::RankView::none};
         if (formats.distances) {
             settings.view = tests.rank_per_pixel ? golden::RankView::per_pixel : golden::RankView::per_point;
@@ -118,10 +119,10 @@ class RankCheck : public HeightTestCheck {
     Golden of_job(const GoldenJob& golden, const PreparedScene& tables) const override {
         const TestSettings& tests = golden.job().tests;
         const Job::Formats& formats = golden.job().formats;
-        golden::RankSettings settings =
-            golden::on_scales({tests.threshold("rank_threshold"), tests.threshold("bound_threshold"), static_cast<int>(formats.rank_bits),
-                               static_cast<int>(formats.bound_bits), golden_view(tests.rank_view)},
-                              golden.scene(), formats.bound_bits > 0 ? code_rounding(golden) : 0);
+        golden::RankSettings settings = golden::on_scales(
+            {tests.threshold("rank_threshold"), tests.threshold("bound_threshold"), static_cast<int>(formats.rank_bits),
+             static_cast<int>(formats.bound_bits), golden_view(tests.rank_view)},
+            golden.scene(), formats.bound_bits > 0 ? code_rounding(golden) : 0);
         golden::RankTable table = table_of(tables);
         if (settings.view == golden::RankView::none)
             settings.bound_threshold = std::min(settings.bound_threshold, number(table.highest_bound_threshold));
@@ -144,10 +145,10 @@ class RankCheck : public HeightTestCheck {
                             std::clamp(golden_threshold - octaves_of_step(formats) * per_octave, -most, most - 1),
                             rounded_down, double_rounding * most + 2 * per_octave * golden.texel_rounding());
         };
-        threshold("tests.rank_threshold", tests.height_thresholds[datapath::rank_number], settings.rank_threshold, rank_per_octave(settings.view),
-                  formats.rank_bits, datapath::rank_limit_bits);
-        threshold("tests.bound_threshold", tests.height_thresholds[datapath::bound_number], settings.bound_threshold, bound_per_octave,
-                  formats.bound_bits, datapath::bound_limit_bits);
+        threshold("tests.rank_threshold", tests.height_thresholds[datapath::rank_number], settings.rank_threshold,
+                  rank_per_octave(settings.view), formats.rank_bits, datapath::rank_limit_bits);
+        threshold("tests.bound_threshold", tests.height_thresholds[datapath::bound_number], settings.bound_threshold,
+                  bound_per_octave, formats.bound_bits, datapath::bound_limit_bits);
         if (seen)
             judge.judge("tests.rank_per_pixel", number(tests.rank_per_pixel),
                         number(settings.view == golden::RankView::per_pixel), exact);

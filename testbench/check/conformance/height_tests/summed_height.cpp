@@ -16,8 +16,8 @@ class SummedHeightCheck : public HeightTestCheck {
         const datapath::TestParameters& tests = setup.registers.tests;
         const bool area = tests.summed_height_unit == SummedHeightUnit::area;
         // With the `sum` unit, the register holds four times the threshold.
-        return std::make_shared<golden::SummedHeightTest>(
-            std::ldexp(number(tests.height_thresholds[0]), area ? 0 : -2), area);
+        return std::make_shared<golden::SummedHeightTest>(std::ldexp(number(tests.height_thresholds[0]), area ? 0 : -2),
+                                                          area);
     }
     Golden of_job(const GoldenJob& golden, const PreparedScene&) const override {
         return std::make_shared<golden::SummedHeightTest>(threshold(golden), area(golden));

@@ -79,14 +79,14 @@ TEST_CASE("Summed Height Test: |S_ij / 2 - (S_i + S_j) / 4| above the threshold,
                 for (std::uint64_t threshold = 0; threshold < 80; ++threshold) {
                     // the register holds four times the paper's threshold, which gives it two fraction bits
                     parameters.summed_height_unit = SummedHeightUnit::sum;
-                    parameters.height_thresholds[0] = threshold;
+                    parameters.height_thresholds[0] = static_cast<std::int64_t>(threshold);
                     if (summed_height_test(i, j, ij, {7, 9}, parameters) !=
                         (value > static_cast<double>(threshold) / 4))
                         FAIL(i << ", " << j << ", " << ij << " against " << threshold);
                 }
                 for (std::uint64_t threshold = 0; threshold < 8; ++threshold) {
                     parameters.summed_height_unit = SummedHeightUnit::area;
-                    parameters.height_thresholds[0] = threshold;
+                    parameters.height_thresholds[0] = static_cast<std::int64_t>(threshold);
                     for (const RectangleSize& size : {RectangleSize{1, 1}, RectangleSize{3, 1}, RectangleSize{2, 5}})
                         if (summed_height_test(i, j, ij, size, parameters) !=
                             (4 * value > static_cast<double>(threshold * size.width * size.height)))

@@ -280,7 +280,7 @@ TEST_CASE("rectangles: with a threshold per area, each axis has its own address 
                         codes.push_back(along_u ? x * x : y * y);
                 Machine machine = machine_of(width, height, u, v, 32, codes);
                 machine.registers.tests.summed_height_unit = SummedHeightUnit::area;
-                machine.registers.tests.height_thresholds[0] = threshold;
+                machine.registers.tests.height_thresholds[0] = static_cast<std::int64_t>(threshold);
                 return machine.summed_height({0, 0}, {(along_u ? 8u : 3u) << 12, (along_u ? 3u : 16u) << 12});
             };
             INFO((u == AddressMode::repeat) << (v == AddressMode::repeat));

@@ -178,7 +178,7 @@ TEST_CASE("reversal: Summed Height Test, every edge on maps of 1 to 4 texels a s
                     const std::uint64_t most = measures.summed_height / area;
                     for (const std::uint64_t threshold :
                          {std::uint64_t{0}, most > 0 ? most - 1 : most, most, most + 1}) {
-                        tests.height_thresholds[0] = threshold;
+                        tests.height_thresholds[0] = static_cast<std::int64_t>(threshold);
                         const bool asks = machine.summed_height(i.texture, j.texture);
                         if (asks != machine.summed_height(j.texture, i.texture) ||
                             asks != (measures.summed_height > threshold * area))
