@@ -29,8 +29,9 @@ constexpr int bits_for(std::uint64_t values) {
     return bits;
 }
 
-/// The height test of a design, which has its own table. The paper's is `summed_height`.
-enum class HeightTest : std::uint8_t { summed_height, rank, curvature, mipmap };
+/// The height test of a design, which has its own table: its number in height_tests(). Named here are the paper's, and the
+/// one that the `greatest_rank` cut needs.
+enum class HeightTest : std::uint8_t { summed_height, rank };
 
 /// How the displacement map and the normal map are read at t (bilinear.h).
 enum class MapFilter : std::uint8_t {

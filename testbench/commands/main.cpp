@@ -10,6 +10,7 @@
 #include <systemc>
 
 #include "testbench/commands/command_line.h"
+#include "testbench/commands/own_height_tests.h"
 #include "testbench/common/error.h"
 #include "testbench/common/interruption.h"
 
@@ -28,6 +29,7 @@ int sc_main(int argc, char** argv) {
     // Reaching a limit stops the simulation; SystemC would report that on standard output.
     sc_core::sc_report_handler::set_actions(sc_core::SC_INFO, sc_core::SC_DO_NOTHING);
     try {
+        tessera::load_own_height_tests();
         const auto command = tessera::read_command_line(argc, argv);
         const ExitCode code = command ? command() : ExitCode::fine;
         // Output may still be buffered: a full disk may be detected only here.

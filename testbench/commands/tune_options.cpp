@@ -9,7 +9,7 @@
 #include <cstdlib>
 
 #include "testbench/commands/option_values.h"
-#include "testbench/job/job_choices.h"
+#include "testbench/setup/height_tests/height_test_host.h"
 
 namespace tessera {
 
@@ -39,8 +39,9 @@ void TuneOptions::add_to(CLI::App& tune) {
     tune.add_option("--metric", metric_, "error to use: rms or max");
     tune.add_option(
             "--tests", order_.tests,
-            "thresholds to search: normal, summed_height or curvature or mipmap, view; rank: that of a Rank Test, with --metric max that of a "
-            "Bound Test; with both, the better is used; default: those of the tests that the job enables")
+            fmt::format("thresholds to search: normal, {}, view; rank: that of a Rank Test, with --metric max that of a "
+                        "Bound Test; with both, the better is used; default: those of the tests that the job enables",
+                        fmt::join(searched_height_tests(), " or ")))
         ->delimiter(',')
         ->allow_extra_args(false);
     vary_given_ = tune.add_option("--vary", vary_,
@@ -73,13 +74,12 @@ TuneOrder TuneOptions::order() const {
     if (metric_ != "rms" && metric_ != "max")
         refuse_usage("tune", fmt::format("--metric {}: must be rms or max", metric_));
     order.largest = metric_ == "max";
-    const std::vector<std::string_view> height_tests = names_of<HeightTest>();
+    const std::vector<std::string_view> height_tests = searched_height_tests();
     for (const std::string& test : order.tests)
-        if (test != "normal" && test != "view" &&
+        if (test != "normal" && test != "view" && test != "rank" &&
             std::find(height_tests.begin(), height_tests.end(), test) == height_tests.end())
-            refuse_usage(
-                "tune",
-                fmt::format("--tests {}: must be normal, summed_height, curvature, mipmap, view or rank", test));
+            refuse_usage("tune", fmt::format("--tests {}: must be normal, {}, view or rank", test,
+                                             fmt::join(height_tests, ", ")));
     if (vary_given_->count() > 0) {
         order.vary.summed_height_unit = order.vary.generation_limit = order.vary.triangulation = false;
         for (const std::string& choice : vary_) {

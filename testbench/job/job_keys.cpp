@@ -89,7 +89,7 @@ class TableWriter {
         };
     }
     template <typename Enum, typename Owner, typename = std::enable_if_t<std::is_enum_v<Enum>>>
-    void add(const char* leaf, Enum Owner::*member, const char* description) const {
+    void add(const char* leaf, Enum Owner::*member, const std::string& description) const {
         add_choice<Enum>(
             leaf, [member](auto& group) -> auto& { return group.*member; }, description);
     }

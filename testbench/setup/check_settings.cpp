@@ -114,7 +114,7 @@ class RangeCheck {
     RangeCheck(const char* part, const Group& group, Faults& faults) : part_(part), group_(group), faults_(faults) {}
 
     template <typename Choice, typename Owner>
-    void add(const char* /*name*/, Choice Owner::* /*member*/, const char* /*description*/) const {}
+    void add(const char* /*name*/, Choice Owner::* /*member*/, const std::string& /*description*/) const {}
     void add(const char* name, std::int64_t Group::*member, const char* /*unit*/, const KeyRange& range,
              const char* /*description*/) const {
         check(name, static_cast<double>(group_.*member), range);

@@ -74,7 +74,7 @@ void declare_formats_keys(const Keys& key) {
 template <typename Keys>
 void declare_scene_keys(const Keys& key) {
     key.add("triangulation", &SceneOptions::triangulation, "Diagonal when two edges split: the shorter one, or always the first or the second; greatest_rank, with hardware.height_test = \"rank\": only the edge of greatest rank is split, of those that request it");
-    key.add("height_test", &SceneOptions::height_test, "summed_height: the paper's Summed Height Test. In its place: rank: the host ranks the points of the base mesh's lattice, and an edge requests a split if the rank of its midpoint exceeds the threshold; curvature, for any base mesh: the host fits quadratics to the map, and an edge requests a split if they deviate from its chord; mipmap, the alternative that the paper discusses: compares heights of the map filtered to the edge's length");
+    key.add("height_test", &SceneOptions::height_test, meaning_of_height_tests());
     key.add("culling", &SceneOptions::culling, "Back-face culling of finished triangles");
     key.add("final_edges", &SceneOptions::final_edges, "An edge that was tested in a parent and not split is not tested again in its children; off: the paper's; the mesh is the same");
     key.add("one_texel_from_map", &SceneOptions::one_texel_from_map, "Vertices carry their displacement codes; for rectangles of one texel, the Summed Height Test uses these and one read of the displacement map instead of the Summed Height Table; off: the paper's; the mesh is the same");

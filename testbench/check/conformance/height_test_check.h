@@ -1,5 +1,4 @@
 #pragma once
-#include <array>
 #include <functional>
 #include <memory>
 
@@ -42,8 +41,8 @@ const HeightTestCheck& rank_check();
 const HeightTestCheck& curvature_check();
 const HeightTestCheck& mipmap_check();
 
-/// In the order of datapath::HeightTest.
-const std::array<const HeightTestCheck*, 4>& height_test_checks();
+/// Adds that of the test added last to datapath::height_tests().
+void add_height_test_check(const HeightTestCheck& check);
 const HeightTestCheck& check_of(datapath::HeightTest test);
 
 }  // namespace tessera

@@ -1,3 +1,4 @@
+#include "modules/datapath/height_tests.h"
 #include "testbench/prove/random_machines/random_job.h"
 
 #include <algorithm>
@@ -126,12 +127,12 @@ void choose_mesh_options(Random& random, Job& job) {
     if (random.chance(75))
         return;
     if (random.chance(40)) {
-        job.hardware.height_test = HeightTest::curvature;
+        job.hardware.height_test = datapath::number_of<datapath::CurvatureTest>();
         job.tests.threshold("curvature_threshold") = random.one_of({0.0, 0.02, 0.3, 3.0});
         return;
     }
     if (random.chance(30)) {
-        job.hardware.height_test = HeightTest::mipmap;
+        job.hardware.height_test = datapath::number_of<datapath::MipmapTest>();
         job.tests.mipmap_filter = random.one_of({MipmapFilter::mean, MipmapFilter::maximum});
         job.tests.threshold("mipmap_threshold") = random.one_of({0.0, 0.002, 0.05});
         return;

@@ -15,6 +15,9 @@ namespace {
 
 class CurvatureHost : public HeightTestHost {
   public:
+    const char* meaning() const override {
+        return "for any base mesh: the host fits quadratics to the map, and an edge requests a split if they deviate from its chord";
+    }
     const std::vector<HeightThresholdKey>& thresholds() const override {
         static const std::vector<HeightThresholdKey> keys{
             {"curvature_threshold", 0.1, "full scale times texels", between(0, 1e9),

@@ -1,5 +1,6 @@
 #pragma once
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "modules/datapath/parameters.h"
@@ -33,6 +34,8 @@ class HeightTestHost {
     HeightTestHost(const HeightTestHost&) = delete;
     HeightTestHost& operator=(const HeightTestHost&) = delete;
 
+    /// What an edge requests a split for, for the text of the key hardware.height_test.
+    virtual const char* meaning() const = 0;
     /// In the order of the key reference.
     virtual const std::vector<HeightThresholdKey>& thresholds() const = 0;
     /// Throws InputError if a threshold is beyond its register, or below its step.
@@ -53,8 +56,16 @@ const HeightTestHost& rank_host();
 const HeightTestHost& curvature_host();
 const HeightTestHost& mipmap_host();
 
-/// In the order of datapath::HeightTest.
+/// In the order of datapath::height_tests().
 const std::vector<const HeightTestHost*>& height_test_hosts();
+/// Adds that of the test added last. Throws std::invalid_argument if a threshold's key is taken.
+void add_height_test_host(const HeightTestHost& host);
+
+/// "summed_height: ...; rank: ...": all of them.
+std::string meaning_of_height_tests();
+
+/// The names of those that are decided by one threshold.
+std::vector<std::string_view> searched_height_tests();
 
 const HeightTestHost& host_of(datapath::HeightTest test);
 

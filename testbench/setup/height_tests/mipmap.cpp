@@ -14,6 +14,9 @@ namespace {
 
 class MipmapHost : public HeightTestHost {
   public:
+    const char* meaning() const override {
+        return "the alternative that the paper discusses: compares heights of the map filtered to the edge's length";
+    }
     const std::vector<HeightThresholdKey>& thresholds() const override {
         static const std::vector<HeightThresholdKey> keys{
             {"mipmap_threshold", 0.02, "full scale", between(0, 1),

@@ -56,6 +56,9 @@ void remark_on_base(const std::vector<TextureTriangle>& base, PreparedScene& sce
 
 class RankHost : public HeightTestHost {
   public:
+    const char* meaning() const override {
+        return "the host ranks the points of the base mesh's lattice, and an edge requests a split if the rank of its midpoint exceeds the threshold";
+    }
     const std::vector<HeightThresholdKey>& thresholds() const override {
         static const std::vector<HeightThresholdKey> keys{
             {"rank_threshold", 0.05,

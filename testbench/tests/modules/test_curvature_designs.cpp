@@ -3,6 +3,7 @@
 #include <random>
 #include <string>
 
+#include "modules/datapath/height_tests.h"
 #include "testbench/tests/support/case_table.h"
 #include "testbench/tests/support/checked_run.h"
 #include "testbench/tests/support/job_settings.h"
@@ -38,7 +39,7 @@ void check_design(const MachineSetup& setup, std::uint64_t least_splits) {
     REQUIRE(run.counts.edges_split > least_splits);
     const Totals totals(run.simulation);
     CHECK(totals.height_table_reads > 0);
-    const bool curvature = setup.registers.formats.height_test == HeightTest::curvature;
+    const bool curvature = setup.registers.formats.height_test == datapath::number_of<datapath::CurvatureTest>();
     CHECK((totals.evaluated.summed_height_by_codes > 0) == curvature);
     run.expect_closed_in_texture();
 }

@@ -207,6 +207,121 @@ TEST_CASE("the first platform builds and runs as in its README") {
     CHECK(run({(pictures / "platform").string(), "fast"}, home.path()).exit_code == 2);
 }
 
+namespace {
+
+const fs::path height_test = source_folder() / "testbench/examples/height_test";
+
+/// The commands of the page, of this build.
+std::vector<std::string> height_test_commands() {
+    std::vector<std::string> commands = code_in(height_test / "README.md", "sh");
+    for (std::string& command : commands)
+        command = std::regex_replace(command, std::regex("build/release"), TESSERA_BUILD_FOLDER);
+    return commands;
+}
+
+Environment at_home(const fs::path& home) {
+    return {{"HOME", home.string()}, {"CXX", TESSERA_COMPILER}, {"CXXFLAGS", strict}};
+}
+
+ProgramEnd run_with_library(const fs::path& library, const Arguments& settings, const fs::path& folder) {
+    Arguments command{"run", "--set", "output.folder=out"};
+    for (const std::string& setting : settings)
+        command = command + Arguments{"--set", setting};
+    return run_tessera(command, folder, {}, {{"TESSERA_HEIGHT_TESTS", library.string()}});
+}
+
+}  // namespace
+
+TEST_CASE("a height test of one's own builds and runs as in its README") {
+    const TestFolder home(scratch);
+    const std::vector<std::string> commands = height_test_commands();
+    CHECK(commands.size() == 6);
+    for (const std::string& command : commands)
+        require_success({"bash", "-euc", command + " 2>&1"}, source_folder(), at_home(home.path()));
+    const fs::path range = home.path() / "range";
+    for (const char* const design : {"paper", "modern"}) {
+        INFO(design);
+        CHECK((read_all(range / design / "mesh.ply") == read_all(range / "paper/mesh.ply")));
+        const std::string conformance = read_all(range / design / "conformance.txt");
+        CHECK_THAT(conformance, Contains("range table") && Contains("every block's lowest and highest code"));
+        CHECK_THAT(read_all(range / design / "timing.txt"), Contains("range_test") && Contains("range_table"));
+        CHECK_THAT(read_all(range / design / "job.toml"), Contains("\nrange_threshold = 0.05"));
+    }
+    CHECK_THAT(read_all(range / "tuned.toml"), Contains("height_test = \"range\"") && Contains("range_threshold = "));
+
+    const fs::path library = range / "librange_test.so";
+    const Arguments ranges{"hardware.height_test=range", "mesh.columns=2", "mesh.rows=2"};
+    for (const Arguments& further : {Arguments{"tests.range_threshold=0"},
+                                     {"tests.range_threshold=1"},
+                                     {"formats.displacement_bits=5", "map.source=noise", "map.address_u=repeat"},
+                                     {"mode=timed", "timing.height_table_cache_bytes=512", "hardware.tests_units=3"},
+                                     {"mode=timed", "check.reads=true", "hardware.machines=2", "map.width=37"}}) {
+        const ProgramEnd end = run_with_library(library, ranges + further, home.path());
+        INFO(end.text());
+        CHECK(end.exit_code == 0);
+    }
+    CHECK_THAT(run_with_library(library, ranges + Arguments{"tests.range_threshold=1e-9"}, home.path()).err,
+               Contains("tests.range_threshold = 1e-09 is less than one step of its register"));
+}
+
+TEST_CASE("a height test of one's own that is wrong fails its run, and names the first wrong value") {
+    const TestFolder home(scratch);
+    const std::vector<std::string> commands = height_test_commands();
+    REQUIRE(commands.size() == 6);
+    fs::copy(height_test, home.path() / "edited");
+    const std::vector<std::string> build{
+        commands[0], std::regex_replace(commands[1], std::regex("-S \\S+"), "-S ~/edited"), commands[2]};
+    struct Fault {
+        const char *file, *before, *after, *says;
+    };
+    for (const Fault& fault : {Fault{"host.h", "std::min(low[to]", "std::max(low[to]", "range table: "},
+                               {"host.h", "highest, highest,", "highest / 2, highest,", "tests.range_threshold = "},
+                               {"range_test.h", "highest - lowest > limit", "highest - lowest >= limit", ""},
+                               {"range_test.h", "table.rows = 1;", "table.rows = 2;", "range_table.rows = 2"}}) {
+        INFO(fault.before);
+        const std::string right = read_all(height_test / fault.file);
+        const std::size_t at = right.find(fault.before);
+        REQUIRE(at != std::string::npos);
+        write_all(home.path() / "edited" / fault.file,
+                  std::string(right).replace(at, std::string(fault.before).size(), fault.after));
+        for (const std::string& command : build)
+            require_success({"bash", "-euc", command + " 2>&1"}, source_folder(), at_home(home.path()));
+        const ProgramEnd end = run_with_library(home.path() / "range/librange_test.so",
+                                                {"hardware.height_test=range", "tests.range_threshold=0"}, home.path());
+        INFO(end.text());
+        CHECK(end.exit_code == 1);
+        CHECK_THAT(end.text(), Contains(fault.says));
+        write_all(home.path() / "edited" / fault.file, right);
+    }
+}
+
+TEST_CASE("a library that is no height test is refused with the reason") {
+    const TestFolder here;
+    const auto refused = [&](const std::string& file, const std::string& words) {
+        const ProgramEnd end = run_with_library(file, {}, here.path());
+        INFO(end.text());
+        CHECK(end.exit_code == 2);
+        CHECK_THAT(end.err, Contains("TESSERA_HEIGHT_TESTS: " + file) && Contains(words));
+        CHECK_FALSE(fs::exists(here.path() / "out"));
+    };
+    refused("nowhere.so", "cannot open shared object file");
+    write_all(here.path() / "text.so", "no library");
+    refused("text.so", "set it to a library built as in testbench/examples/height_test/README.md");
+    const auto compile = [&](const std::string& source) {
+        write_all(here.path() / "test.cpp", source);
+        require_success({TESSERA_COMPILER, "-std=c++17", "-shared", "-fPIC", "-I", source_folder().string(), "test.cpp",
+                         "-o", "test.so"},
+                        here.path());
+    };
+    compile("int other;\n");
+    refused("test.so", "it has no tessera_height_test(): define it by the macro TESSERA_HEIGHT_TEST");
+    const std::string older =
+        "struct Test { const char* version; const void *a, *b, *c; } test{\"0.0.1\"};\n"
+        "extern \"C\" const Test* tessera_height_test() { return &test; }\n";
+    compile(older);
+    refused("test.so", "it was built with tessera 0.0.1, this is ");
+}
+
 TEST_CASE("a client keeps its variables and its warnings") {
     const TestFolder folder(scratch);
     const fs::path moved = install_in(folder.path());

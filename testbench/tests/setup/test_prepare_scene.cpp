@@ -95,7 +95,7 @@ class BeyondRanges {
                 refused(name, [&](Group& group) { (group.*member)[k] = value; });
     }
     template <typename Choice, typename Owner>
-    void add(const char*, Choice Owner::*, const char*) const {}
+    void add(const char*, Choice Owner::*, const std::string&) const {}
 
   private:
     template <typename Spoil>

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <string>
 
+#include "modules/datapath/height_tests.h"
 #include "modules/datapath/curvature.h"
 #include "modules/datapath/midpoint.h"
 #include "modules/datapath/mipmap.h"
@@ -21,7 +22,7 @@ namespace {
 MachineSetup random_setup(Random& random, const datapath::Formats& formats) {
     MachineSetup setup = Case::make_setup(random, formats, Manner::tame);
     datapath::Registers& registers = setup.registers;
-    registers.formats.height_test = datapath::HeightTest::curvature;
+    registers.formats.height_test = datapath::number_of<datapath::CurvatureTest>();
     registers.covered = {registers.map.width + random.natural(0, 9), registers.map.height};
     setup.curvature_table.covered = covered_texels(registers);
     for (std::uint64_t k = 0; k < curvature_entries(covered_texels(registers)); ++k)
@@ -35,7 +36,7 @@ MachineSetup random_setup(Random& random, const datapath::Formats& formats) {
 /// Levels computed from the map, with the Mipmap Test alone.
 MachineSetup mipmap_setup(Random& random, const datapath::Formats& formats) {
     MachineSetup setup = Case::make_setup(random, formats, Manner::tame);
-    setup.registers.formats.height_test = datapath::HeightTest::mipmap;
+    setup.registers.formats.height_test = datapath::number_of<datapath::MipmapTest>();
     setup.mipmap_table = make_mipmap_table(setup.map, random.one_of({MipmapFilter::mean, MipmapFilter::maximum}));
     datapath::TestParameters& tests = setup.registers.tests;
     tests.normal_test = tests.view_test = tests.tex_coord_test = tests.generation_test = false;
@@ -53,7 +54,7 @@ std::uint64_t measure(const MachineSetup& setup, const datapath::TexCoord& i, co
     r.displacement_map.base = r.height_table.base = 0;
     datapath::Entries read{};
     std::size_t count = 0;
-    if (r.formats.height_test == datapath::HeightTest::mipmap) {
+    if (r.formats.height_test == datapath::number_of<datapath::MipmapTest>()) {
         mipmap_reads(i, j, ij, r, [&](std::uint64_t address) {
             read[count++] = setup.mipmap_table.entries[address / r.height_table.entry_bytes];
         });
@@ -78,7 +79,7 @@ datapath::TrianglePass decided(const MachineSetup& setup, datapath::TrianglePass
     for (unsigned k = 0; k < 3; ++k) {
         std::uint8_t& tests = pass.edges[k].tests;
         const std::uint64_t found = measure(setup, pass, static_cast<int>(k));
-        const bool above = setup.registers.formats.height_test == datapath::HeightTest::mipmap
+        const bool above = setup.registers.formats.height_test == datapath::number_of<datapath::MipmapTest>()
                                ? mipmap_test(found, setup.registers.tests)
                                : curvature_test(found, setup.registers.tests);
         const bool splits = above != ((flipped >> k & 1u) != 0);

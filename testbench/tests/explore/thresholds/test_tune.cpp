@@ -7,6 +7,7 @@
 #include <set>
 #include <tuple>
 
+#include "modules/datapath/height_tests.h"
 #include "modules/datapath/rank.h"
 #include "testbench/check/surface_error/height_field.h"
 #include "testbench/explore/thresholds/rank_curve.h"
@@ -357,10 +358,10 @@ TEST_CASE("a Rank Test's threshold is the best of all values of its register") {
 
 TEST_CASE("a Curvature or a Mipmap Test's threshold is tuned, alone and beside the Normal Test") {
     TuneRequest request = request_for(small_job());
-    for (const auto& [test, normal] : {std::pair{HeightTest::curvature, false},
-                                       {HeightTest::curvature, true},
-                                       {HeightTest::mipmap, false},
-                                       {HeightTest::mipmap, true}}) {
+    for (const auto& [test, normal] : {std::pair{datapath::number_of<datapath::CurvatureTest>(), false},
+                                       {datapath::number_of<datapath::CurvatureTest>(), true},
+                                       {datapath::number_of<datapath::MipmapTest>(), false},
+                                       {datapath::number_of<datapath::MipmapTest>(), true}}) {
         request.job.hardware.height_test = test;
         request.job.tests.normal = request.space.normal = normal;
         request.goal.triangles = 300;

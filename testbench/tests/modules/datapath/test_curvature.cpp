@@ -1,3 +1,4 @@
+#include "modules/datapath/height_tests.h"
 #include "modules/datapath/curvature.h"
 
 #include <catch2/catch.hpp>
@@ -121,7 +122,7 @@ TEST_CASE("CT: every edge of narrow formats measures and decides alike from both
     const int fraction = GENERATE(0, 1);
     Registers r;
     r.formats = narrow_formats(fraction);
-    r.formats.height_test = HeightTest::curvature;
+    r.formats.height_test = number_of<CurvatureTest>();
     r.map = {7, 6, AddressMode::repeat, AddressMode::clamp};
     r.covered = {7, 9};
     r.displacement_map.base = 0x1000;
@@ -129,7 +130,7 @@ TEST_CASE("CT: every edge of narrow formats measures and decides alike from both
     shape_tables(r);
     CHECK(r.height_table.columns == curvature_entries(covered_texels(r)));
     Registers empty;
-    empty.formats.height_test = HeightTest::curvature;
+    empty.formats.height_test = number_of<CurvatureTest>();
     shape_tables(empty);
     CHECK(empty.height_table.bytes() == 0);
     // Random bits, by address.

@@ -81,7 +81,7 @@ TEST_CASE("height tests: a Rank Test reads the midpoint's entry, and nothing if 
 }
 
 TEST_CASE("height tests: a Curvature Test reads one cell, or for a short edge three codes") {
-    const Registers r = registers_of(HeightTest::curvature);
+    const Registers r = registers_of(number_of<CurvatureTest>());
     const Reads cell = reads_of(edge_along_u(10, 10, 8), r);
     CHECK(cell.requests() == 1);
     CHECK(cell.entries() == 1);
@@ -94,7 +94,7 @@ TEST_CASE("height tests: a Curvature Test reads one cell, or for a short edge th
 }
 
 TEST_CASE("height tests: a Mipmap Test reads the blocks of both ends and of the midpoint, a request each") {
-    const Registers r = registers_of(HeightTest::mipmap);
+    const Registers r = registers_of(number_of<MipmapTest>());
     const Reads three = reads_of(edge_along_u(10, 10, 2), r);
     CHECK(three.requests() == 3);
     const auto block = [](std::uint64_t x) { return 0x20000 + (10 * 48 + x) * 2; };

@@ -1,3 +1,4 @@
+#include "modules/datapath/height_tests.h"
 #include "modules/datapath/mipmap.h"
 
 #include <catch2/catch.hpp>
@@ -65,7 +66,7 @@ TEST_CASE("mipmap: the threshold is twice the midpoint's deviation from the chor
 
 TEST_CASE("MT: reads the entries of both ends and the midpoint, at the edge's level") {
     Registers r;
-    r.formats.height_test = HeightTest::mipmap;
+    r.formats.height_test = number_of<MipmapTest>();
     r.map = {40, 24, AddressMode::clamp, AddressMode::repeat};
     r.height_table.base = 0x3000;
     shape_tables(r);

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "modules/datapath/height_tests.h"
 #include "modules/datapath/all_intermediates.h"
 #include "modules/datapath/registers.h"
 #include "testbench/tests/support/count_members.h"
@@ -119,7 +120,7 @@ template <class Visit>
 void visit_every_register(Visit visit) {
     std::set<std::string> seen;
     for (const HeightTest test :
-         {HeightTest::summed_height, HeightTest::rank, HeightTest::curvature, HeightTest::mipmap}) {
+         {HeightTest::summed_height, HeightTest::rank, number_of<CurvatureTest>(), number_of<MipmapTest>()}) {
         Registers registers;
         registers.formats.highlight_tag = true;
         registers.formats.height_test = test;
@@ -188,7 +189,7 @@ TEST_CASE("registers: a test in place of the Summed Height Test adds its own reg
     std::vector<std::string> without = names(HeightTest::summed_height);
     without.erase(std::find(without.begin(), without.end(), "tests.summed_height_threshold"));
     for (const auto& [test, more] :
-         {std::pair{HeightTest::rank, 4u}, {HeightTest::curvature, 3u}, {HeightTest::mipmap, 1u}}) {
+         {std::pair{HeightTest::rank, 4u}, {number_of<CurvatureTest>(), 3u}, {number_of<MipmapTest>(), 1u}}) {
         const std::vector<std::string> with = names(test);
         REQUIRE(with.size() == without.size() + more);
         CHECK(std::equal(without.begin(), without.end(), with.begin()));

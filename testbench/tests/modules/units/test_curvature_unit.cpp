@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "modules/datapath/height_tests.h"
 #include "modules/datapath/midpoint.h"
 #include "modules/datapath/table_shapes.h"
 #include "modules/memories/table_memory.h"
@@ -31,7 +32,7 @@ struct Row {
 
 datapath::Registers registers_of(const Row& row) {
     datapath::Registers registers;
-    registers.formats.height_test = datapath::HeightTest::curvature;
+    registers.formats.height_test = datapath::number_of<datapath::CurvatureTest>();
     registers.map = {21, 13, row.mode, row.mode};
     registers.covered = {33, 17};
     registers.displacement_map.base = 0x1000;

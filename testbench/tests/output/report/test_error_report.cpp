@@ -1,3 +1,4 @@
+#include "modules/datapath/height_tests.h"
 #include "testbench/output/report/error_report.h"
 
 #include <catch2/catch.hpp>
@@ -178,9 +179,9 @@ TEST_CASE("error.txt and error.json name the tests that the job has") {
     job.hardware.height_test = HeightTest::rank;
     named("neither Normal Test nor Rank Test requested a split", "1 Normal Test, 2 Rank Test, 3 both, 0 base");
     job.tests.normal = false;
-    job.hardware.height_test = HeightTest::curvature;
+    job.hardware.height_test = datapath::number_of<datapath::CurvatureTest>();
     named("not even the Curvature Test requested a split", "1 Normal Test, 2 Curvature Test, 3 both, 0 base");
-    job.hardware.height_test = HeightTest::mipmap;
+    job.hardware.height_test = datapath::number_of<datapath::MipmapTest>();
     job.tests.highlight = true;
     named("neither Mipmap Test nor Highlight Test requested a split", "1 Normal Test, 2 Mipmap Test, 3 both, 0 base");
     job.tests.highlight = job.tests.summed_height = false;

@@ -1,0 +1,54 @@
+#include "testbench/commands/own_height_tests.h"
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+#include "modules/datapath/height_tests.h"
+#include "testbench/common/error.h"
+
+namespace tessera {
+
+namespace {
+
+constexpr const char* variable = "TESSERA_HEIGHT_TESTS";
+
+void load(const std::string& file) {
+    const auto refuse = [&](const std::string& why) {
+        throw InputError(fmt::format("{}: {}: {}", variable, file, why));
+    };
+    // A name without a slash would be looked for in the system's folders.
+    void* const library = dlopen((file.find('/') == std::string::npos ? "./" + file : file).c_str(), RTLD_NOW);
+    if (library == nullptr)
+        refuse(fmt::format("{}; set it to a library built as in testbench/examples/height_test/README.md", dlerror()));
+    using Find = const OwnHeightTest* (*)();
+    const auto find = reinterpret_cast<Find>(dlsym(library, "tessera_height_test"));
+    if (find == nullptr)
+        refuse("it has no tessera_height_test(): define it by the macro TESSERA_HEIGHT_TEST (own_height_tests.h)");
+    const OwnHeightTest& test = *find();
+    if (test.version != std::string(version))
+        refuse(fmt::format("it was built with tessera {}, this is {}: build it again", test.version, version));
+    try {
+        datapath::add_height_test(*test.functions);
+        add_height_test_host(*test.host);
+        add_height_test_check(*test.check);
+    } catch (const std::invalid_argument& taken) {
+        refuse(fmt::format("{}: give its own another name", taken.what()));
+    }
+}
+
+}  // namespace
+
+void load_own_height_tests() {
+    const char* const files = std::getenv(variable);
+    std::istringstream list(files == nullptr ? "" : files);
+    for (std::string file; std::getline(list, file, ':');)
+        if (!file.empty())
+            load(file);
+}
+
+}  // namespace tessera
