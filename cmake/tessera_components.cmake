@@ -116,8 +116,10 @@ function(tessera_install_package)
   endif()
   configure_file(cmake/tessera.pc.in tessera.pc @ONLY)
 
-  install(FILES ${PROJECT_BINARY_DIR}/tesseraConfig.cmake ${PROJECT_BINARY_DIR}/tesseraConfigVersion.cmake
-                cmake/FindSystemC.cmake
-          DESTINATION ${folder} COMPONENT tessera)
+  foreach(component tessera height_test)  # of the installation: the libraries; the program and what its plug-ins need
+    install(FILES ${PROJECT_BINARY_DIR}/tesseraConfig.cmake ${PROJECT_BINARY_DIR}/tesseraConfigVersion.cmake
+                  cmake/FindSystemC.cmake
+            DESTINATION ${folder} COMPONENT ${component})
+  endforeach()
   install(FILES ${PROJECT_BINARY_DIR}/tessera.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT tessera)
 endfunction()

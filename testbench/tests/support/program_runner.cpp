@@ -115,8 +115,9 @@ Arguments set(const Arguments& settings) {
     return arguments;
 }
 
-ProgramEnd run_tessera(const Arguments& arguments, const fs::path& folder, const ProgramLimits& limits) {
-    return run_program(Arguments{tessera_program()} + arguments, folder, limits);
+ProgramEnd run_tessera(const Arguments& arguments, const fs::path& folder, const ProgramLimits& limits,
+                       const Environment& environment) {
+    return run_program(Arguments{tessera_program()} + arguments, folder, limits, environment);
 }
 
 ProgramEnd succeed(const Arguments& arguments, const fs::path& folder) {

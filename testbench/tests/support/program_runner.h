@@ -43,7 +43,7 @@ Arguments set(const Arguments& settings);
 
 /// The same for `tessera` with these arguments.
 ProgramEnd run_tessera(const Arguments& arguments, const std::filesystem::path& folder,
-                       const ProgramLimits& limits = {});
+                       const ProgramLimits& limits = {}, const Environment& environment = {});
 
 /// The same; requires exit code 0 and an empty standard error.
 ProgramEnd succeed(const Arguments& arguments, const std::filesystem::path& folder);
