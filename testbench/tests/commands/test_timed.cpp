@@ -42,7 +42,7 @@ TEST_CASE("timed run: twice the key that the bottleneck names takes fewer cycles
              ports({"hardware.test_order=cheap_first", "hardware.final_edges=true"}, "summed_height_table"),
              ports({"timing.summed_height_table_cache_bytes=16384"}, "summed_height_table"),
              ports({"hardware.queue_capacity=8", "hardware.queue_order=lifo"}, "summed_height_table"),
-             ports({"hardware.height_test=mipmap"}, "mipmap_table"),
+             ports({"hardware.height_test=mipmap"}, "height_table"),
              none({"hardware.design=modern", "timing.normal_map_ports=1"}),
              ports({"timing.summed_height_table_ports=16", "timing.displacement_map_width=1",
                     "hardware.displacement_filter=bilinear"},
