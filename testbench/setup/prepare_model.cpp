@@ -79,7 +79,8 @@ std::string relief_remark(const HeightMap& map, const DisplacementSettings& sett
 }
 
 /// A sentence if no base vertex, at any height, is beyond the near plane; else empty.
-std::string unseen_remark(const CameraSettings& camera, const BaseMesh& mesh, const DisplacementRange& displacement) {
+std::string unseen_remark(const CameraSettings& camera, bool view_test, const BaseMesh& mesh,
+                          const DisplacementRange& displacement) {
     const glm::dvec3 eye(camera.eye[0], camera.eye[1], camera.eye[2]), backward = view_axes(camera).backward;
     const double reach = std::max(std::abs(displacement.bias), std::abs(displacement.bias + displacement.range));
     double farthest = -std::numeric_limits<double>::infinity();
@@ -87,13 +88,14 @@ std::string unseen_remark(const CameraSettings& camera, const BaseMesh& mesh, co
         farthest = std::max(farthest, glm::dot(eye - vertex.position, backward) + reach);
     if (farthest > camera.near_plane)
         return {};
+    const char* const so =
+        view_test ? "the camera sees nothing and the View Test allows no split" : "the camera sees nothing";
     return farthest > 0
                ? fmt::format(
-                     "all of the mesh is nearer than camera.near_plane = {:.6g}, so that the View Test "
-                     "splits nothing: set camera.near_plane = \"auto\"",
-                     camera.near_plane)
-               : "all of the mesh is behind the camera, so that the View Test splits nothing: set camera.target "
-                 "= \"auto\"";
+                     "all of the mesh is nearer than camera.near_plane = {:.6g}, so that {}: set "
+                     "camera.near_plane = \"auto\"",
+                     camera.near_plane, so)
+               : fmt::format("all of the mesh is behind the camera, so that {}: set camera.target = \"auto\"", so);
 }
 
 }  // namespace
@@ -137,7 +139,7 @@ PreparedScene prepare_model(const SceneSettings& settings, const BaseMesh& mesh,
     make_height_table(settings.tests, scene);
     lay_out_tables(registers);
 
-    if (std::string remark = unseen_remark(settings.camera, mesh, displacement); settings.tests.view && !remark.empty())
+    if (std::string remark = unseen_remark(settings.camera, settings.tests.view, mesh, displacement); !remark.empty())
         scene.remarks.push_back(std::move(remark));
     const ViewAxes view = view_axes(settings.camera);
     const double height_per_code = displacement.range * model_scale.scale / scene.map.highest_code();

@@ -64,6 +64,8 @@ inline const std::map<std::string, std::vector<Remedy>>& remedies() {
              {"run 'camera.eye=[1,1,1]' 'camera.target=[1,1,1]'", "set camera.target = {}", ""},
              {"run camera.near_plane=1e6", R"(set camera.near_plane = "auto")", ""},
              {"run 'camera.eye=[0,-3,1]' 'camera.target=[0,-6,1]'", R"(set camera.target = "auto")", "run 'camera.eye=[0,-3,1]'"},
+             {"run tests.view=false 'camera.eye=[0,-3,1]' 'camera.target=[0,-6,1]'", R"(set camera.target = "auto")", "run tests.view=false 'camera.eye=[0,-3,1]'"},
+             {"run tests.view=false camera.near_plane=1e6", R"(set camera.near_plane = "auto")", ""},
              {"run map.source=constant map.value=0 'camera.eye=[0,0,0]'", R"(set camera.eye = "auto")", ""},
              {"run 'camera.target=[1e11,0,0]'", "up to {:.3g} away: move camera.eye nearer", "run 'camera.target=[1e11,0,0]' 'camera.eye=[0,-3,2]'"},
              {"run 'camera.up=[0,0,0]'", "set one, such as [0, 0, 1]", "run 'camera.up=[0, 0, 1]'"},
