@@ -14,6 +14,7 @@
 #include "testbench/job/validate_job.h"
 #include "testbench/machine/bare_recursion.h"
 #include "testbench/prove/random_machines/random_job.h"
+#include "testbench/setup/height_tests/height_test_host.h"
 
 namespace tessera {
 
@@ -68,23 +69,20 @@ void coarsen(Random& random, Job::Tests& tests) {
     }
     tests.normal_threshold = std::min(2.0, 2 * tests.normal_threshold + 0.005);
     tests.highlight_normal_threshold = std::min(2.0, 2 * tests.highlight_normal_threshold + 0.005);
-    tests.threshold("rank_threshold") = 2 * tests.threshold("rank_threshold") + 0.005;
-    tests.threshold("curvature_threshold") = 2 * tests.threshold("curvature_threshold") + 0.05;
-    tests.threshold("mipmap_threshold") = std::min(1.0, 2 * tests.threshold("mipmap_threshold") + 0.005);
-    tests.threshold("bound_threshold") = std::min(1e6, 2 * tests.threshold("bound_threshold") + 0.005);
+    for (const HeightTestHost* const host : height_test_hosts())
+        for (const HeightThresholdKey& key : host->thresholds())
+            tests.threshold(key.name) = std::min(key.range.high, 2 * tests.threshold(key.name) + key.value / 5);
     const bool area = tests.summed_height_unit == SummedHeightUnit::area;
     tests.threshold("summed_height_threshold") =
-        std::min(area ? 2.0 : 4096.0, 2 * tests.threshold("summed_height_threshold") + (area ? 0.001 : 0.05));
+        std::min(area ? 2.0 : 4096.0, tests.threshold("summed_height_threshold"));
 }
 
 /// Changes the tests so that the mesh has somewhat more triangles.
 void refine(Random& random, const Job::Formats& formats, Job::Tests& tests) {
     tests.normal_threshold /= 4;
-    tests.threshold("summed_height_threshold") /= 4;
-    tests.threshold("rank_threshold") /= 4;
-    tests.threshold("curvature_threshold") /= 4;
-    tests.threshold("mipmap_threshold") /= 4;
-    tests.threshold("bound_threshold") /= 4;
+    for (const HeightTestHost* const host : height_test_hosts())
+        for (const HeightThresholdKey& key : host->thresholds())
+            tests.threshold(key.name) /= 4;
     if (random.coin())
         tests.view_threshold /= 4;
     else

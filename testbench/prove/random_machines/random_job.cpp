@@ -1,10 +1,11 @@
-#include "modules/datapath/height_tests.h"
 #include "testbench/prove/random_machines/random_job.h"
 
 #include <algorithm>
 #include <cmath>
 
+#include "modules/datapath/height_tests.h"
 #include "modules/timing/all_units.h"
+#include "testbench/setup/height_tests/height_test_host.h"
 
 namespace tessera {
 
@@ -126,18 +127,14 @@ void choose_mesh_options(Random& random, Job& job) {
         std::min(job.formats.texture_fraction, random.one_of<std::int64_t>({-1, -1, 0, 1, 2}));
     if (random.chance(75))
         return;
-    if (random.chance(40)) {
-        job.hardware.height_test = datapath::number_of<datapath::CurvatureTest>();
-        job.tests.threshold("curvature_threshold") = random.one_of({0.0, 0.02, 0.3, 3.0});
-        return;
-    }
-    if (random.chance(30)) {
-        job.hardware.height_test = datapath::number_of<datapath::MipmapTest>();
+    const auto tests = static_cast<unsigned>(datapath::height_tests().size());
+    job.hardware.height_test = static_cast<HeightTest>(random.natural(1, tests - 1));
+    if (job.hardware.height_test != HeightTest::rank) {
+        for (const HeightThresholdKey& key : host_of(job.hardware.height_test).thresholds())
+            job.tests.threshold(key.name) = std::min(key.range.high, key.value * random.one_of({0.0, 0.1, 1.0, 10.0}));
         job.tests.mipmap_filter = random.one_of({MipmapFilter::mean, MipmapFilter::maximum});
-        job.tests.threshold("mipmap_threshold") = random.one_of({0.0, 0.002, 0.05});
         return;
     }
-    job.hardware.height_test = HeightTest::rank;
     if (random.chance(70))
         job.hardware.triangulation = Triangulation::greatest_rank;
     job.formats.rank_bits = random.one_of<std::int64_t>({0, 6, 8, 11, 16});
