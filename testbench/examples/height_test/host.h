@@ -14,7 +14,7 @@ namespace range_test {
 class RangeHost : public tessera::HeightTestHost {
   public:
     const char* meaning() const override {
-        return "the range of the map's heights around the edge exceeds the threshold";
+        return "an edge requests a split if the heights around it differ by more than the threshold";
     }
     const std::vector<tessera::HeightThresholdKey>& thresholds() const override {
         static const std::vector<tessera::HeightThresholdKey> keys{
