@@ -277,7 +277,7 @@ inline const std::map<std::string, std::vector<Remedy>>& remedies() {
              {"tessera tune small.toml --triangles 0", "a mesh has at least one", "tessera tune small.toml --triangles 40 --vary none"},
              {"tessera tune small.toml --error 0", "must be above 0", "tessera tune small.toml --error 0.2 --vary none"},
              {"tessera tune small.toml --error 0.05 --metric mean", "must be rms or max", "tessera tune small.toml --error 0.6 --metric max --vary none"},
-             {"tessera tune small.toml --triangles 40 --tests none", "must be normal, summed_height, curvature, mipmap, view or rank", "tessera tune small.toml --triangles 200 --tests normal --vary none"},
+             {"tessera tune small.toml --triangles 40 --tests none", "must be normal, {}, view or rank", "tessera tune small.toml --triangles 200 --tests normal --vary none"},
              {"tessera tune small.toml --triangles 40 --vary all", "must be unit, generation or triangulation, or only none", "tessera tune small.toml --triangles 40 --vary none"},
              {"tessera tune small.toml --triangles 40 --output ''", "name the tuned job's file", "tessera tune small.toml --triangles 40 --vary none --output b.toml"},
              {"tessera tune small.toml --triangles 5", "use at least that many", "tessera tune small.toml --triangles 18 --vary none"},
@@ -373,6 +373,8 @@ inline const std::vector<NotFollowed>& not_followed() {
     const std::string part = "the parts of a sentence that other cases follow";
     const std::string none = "no advice";
     static const std::vector<NotFollowed> all{
+        {"set it to a library built as in testbench/examples/height_test/README.md", {}, "packaging/test_packaging.cpp"},
+        {"give its own another name", {}, "packaging/test_packaging.cpp"},
         {"narrow the formats to the ranges of their keys", "", "machine/test_limits_formats.cpp"},
         {"use a smaller map or raise formats.texture_integer", "", "machine/test_limits_formats.cpp"},
         {"lower tests.generation_limit or raise formats.generation_bits", "", "machine/test_limits_formats.cpp"},

@@ -320,6 +320,12 @@ TEST_CASE("a library that is no height test is refused with the reason") {
         "extern \"C\" const Test* tessera_height_test() { return &test; }\n";
     compile(older);
     refused("test.so", "it was built with tessera 0.0.1, this is ");
+    compile(
+        "struct Functions { const void* table; const char* name; } functions{nullptr, \"rank\"};\n"
+        "struct Test { const char* version; const void *a, *b, *c; } test{\"" +
+        std::string(version) + "\", &functions, nullptr, nullptr};\n" +
+        "extern \"C\" const Test* tessera_height_test() { return &test; }\n");
+    refused("test.so", "there is a height test rank: give its own another name");
 }
 
 TEST_CASE("a client keeps its variables and its warnings") {
