@@ -13,19 +13,19 @@ namespace tessera {
 
 Pipeline::Units Pipeline::make(const UnitContext& context, UnitFactory& factory) {
     Units made;
-    made.get_triangle = factory.get_triangle("get_triangle", context);
-    made.calculate_new_p = factory.calculate_new_p("calculate_new_p", context);
-    made.displace_vertex = factory.displace_vertex("displace_vertex", context);
-    made.transform = factory.transform("transform", context);
+    made.get_triangle = factory.make<GetTriangle>("get_triangle", context);
+    made.calculate_new_p = factory.make<CalculateNewP>("calculate_new_p", context);
+    made.displace_vertex = factory.make<DisplaceVertex>("displace_vertex", context);
+    made.transform = factory.make<Transform>("transform", context);
     if (context.design.work == Work::triangle) {
-        made.pass_or_tessellate = factory.pass_or_tessellate("pass_or_tessellate", context);
-        made.tessellation = factory.tessellation("tessellation", context);
+        made.pass_or_tessellate = factory.make<PassOrTessellate>("pass_or_tessellate", context);
+        made.tessellation = factory.make<Tessellation>("tessellation", context);
     } else {
-        made.family_pass_or_tessellate = factory.family_pass_or_tessellate("pass_or_tessellate", context);
-        made.family_tessellation = factory.family_tessellation("tessellation", context);
+        made.family_pass_or_tessellate = factory.make<FamilyPassOrTessellate>("pass_or_tessellate", context);
+        made.family_tessellation = factory.make<FamilyTessellation>("tessellation", context);
     }
-    made.triangle_queue = factory.triangle_queue("triangle_queue", context);
-    made.lighting = factory.lighting("lighting", context);
+    made.triangle_queue = factory.make<TriangleQueue>("triangle_queue", context);
+    made.lighting = factory.make<Lighting>("lighting", context);
     return made;
 }
 
@@ -92,7 +92,7 @@ Pipeline::Pipeline(const sc_core::sc_module_name& name, const datapath::Register
       random_stalls_(design.timing.stalls.per_mille > 0) {
     UnitFactory& units = factory == nullptr ? standard_units() : *factory;
     tessellation_tests.init(design.tests_units, [&](const char* unit_name, std::size_t number) {
-        return new TessellationTests(unit_name, {clock, registers, design}, units, static_cast<unsigned>(number));
+        return new TessellationTests(unit_name, {clock, registers, design, static_cast<unsigned>(number)}, units);
     });
     attach();
     set_table_areas();

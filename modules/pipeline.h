@@ -11,6 +11,16 @@
 #include "modules/timing/cycle_scheduler.h"
 #include "modules/timing/design.h"
 #include "modules/unit_factory.h"
+#include "modules/units/calculate_new_p.h"
+#include "modules/units/displace_vertex.h"
+#include "modules/units/families/pass_or_tessellate.h"
+#include "modules/units/families/tessellation.h"
+#include "modules/units/get_triangle.h"
+#include "modules/units/lighting.h"
+#include "modules/units/pass_or_tessellate.h"
+#include "modules/units/tessellation.h"
+#include "modules/units/transform.h"
+#include "modules/units/triangle_queue.h"
 
 namespace tessera {
 

@@ -4,35 +4,36 @@
 
 namespace tessera {
 
-TessellationTests::Units TessellationTests::make(const UnitContext& context, UnitFactory& factory, unsigned number) {
-    const Parts takes = parts_for_tests(number, context.design.tests_units);
+TessellationTests::Units TessellationTests::make(const UnitContext& context, UnitFactory& factory) {
     Units made;
-    made.calculate_new_u = factory.calculate_new_u("calculate_new_u", context);
-    made.tex_coord_test = factory.tex_coord_test("tex_coord_test", context);
-    made.height_test = factory.height_test(functions_of(context.registers.formats.height_test).unit().c_str(), context);
-    made.normal_test = factory.normal_test("normal_test", context, takes);
-    made.view_test = factory.view_test("view_test", context, takes);
+    made.calculate_new_u = factory.make<CalculateNewU>("calculate_new_u", context);
+    made.tex_coord_test = factory.make<TexCoordTest>("tex_coord_test", context);
+    made.height_test =
+        factory.make<HeightTestUnit>(functions_of(context.registers.formats.height_test).unit().c_str(), context);
+    made.normal_test = factory.make<NormalTest>("normal_test", context);
+    made.view_test = factory.make<ViewTest>("view_test", context);
     if (context.design.test_order == TestOrder::parallel)
-        made.collect_tests = factory.collect_tests("collect_tests", context);
+        made.collect_tests = factory.make<CollectTests>("collect_tests", context);
     else if (context.design.work == Work::triangle)
-        made.sequence_tests = factory.sequence_tests("sequence_tests", context);
+        made.sequence_tests = factory.make<SequenceTests>("sequence_tests", context);
     else
-        made.family_sequence_tests = factory.family_sequence_tests("sequence_tests", context);
+        made.family_sequence_tests = factory.make<FamilySequenceTests>("sequence_tests", context);
     const auto numbered = [](const char* name, unsigned k) { return std::string(name) + "_" + std::to_string(k); };
     for (unsigned k = 1; k < context.design.edge_lanes; ++k) {
         made.further_calculate_new_u.push_back(
-            factory.calculate_new_u(numbered("calculate_new_u", k).c_str(), context));
-        made.further_tex_coord_tests.push_back(factory.tex_coord_test(numbered("tex_coord_test", k).c_str(), context));
-        made.further_view_tests.push_back(factory.view_test(numbered("view_test", k).c_str(), context, takes));
+            factory.make<CalculateNewU>(numbered("calculate_new_u", k).c_str(), context));
+        made.further_tex_coord_tests.push_back(
+            factory.make<TexCoordTest>(numbered("tex_coord_test", k).c_str(), context));
+        made.further_view_tests.push_back(factory.make<ViewTest>(numbered("view_test", k).c_str(), context));
     }
     for (unsigned k = 1; k < context.design.normal_tests; ++k)
-        made.further_normal_tests.push_back(factory.normal_test(numbered("normal_test", k).c_str(), context, takes));
+        made.further_normal_tests.push_back(factory.make<NormalTest>(numbered("normal_test", k).c_str(), context));
     return made;
 }
 
 TessellationTests::TessellationTests(const sc_core::sc_module_name& name, const UnitContext& context,
-                                     UnitFactory& factory, unsigned number)
-    : sc_module(name), made_(make(context, factory, number)) {
+                                     UnitFactory& factory)
+    : sc_module(name), made_(make(context, factory)) {
     lanes_.push_back({calculate_new_u, tex_coord_test, view_test});
     for (std::size_t k = 0; k < made_.further_calculate_new_u.size(); ++k)
         lanes_.push_back(

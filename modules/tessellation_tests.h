@@ -5,6 +5,14 @@
 
 #include "modules/timing/design.h"
 #include "modules/unit_factory.h"
+#include "modules/units/edge_tests/calculate_new_u.h"
+#include "modules/units/edge_tests/collect_tests.h"
+#include "modules/units/edge_tests/height_test.h"
+#include "modules/units/edge_tests/normal.h"
+#include "modules/units/edge_tests/sequence_tests.h"
+#include "modules/units/edge_tests/tex_coord.h"
+#include "modules/units/edge_tests/view.h"
+#include "modules/units/families/sequence_tests.h"
 
 namespace tessera {
 
@@ -73,9 +81,7 @@ class TessellationTests : public sc_core::sc_module {
     const std::vector<Lane>& lanes() const { return lanes_; }
     const std::vector<NormalTest*>& normal_tests() const { return normal_tests_; }
 
-    /// number: that of the unit, from 0.
-    TessellationTests(const sc_core::sc_module_name& name, const UnitContext& context, UnitFactory& factory,
-                      unsigned number);
+    TessellationTests(const sc_core::sc_module_name& name, const UnitContext& context, UnitFactory& factory);
 
     /// Binds the units inside to one another. Call once.
     void wire();
@@ -91,7 +97,7 @@ class TessellationTests : public sc_core::sc_module {
     void wire_lanes();
     template <class Collector>
     void take_results(Collector& collector);
-    static Units make(const UnitContext& context, UnitFactory& factory, unsigned number);
+    static Units make(const UnitContext& context, UnitFactory& factory);
 
     std::vector<Lane> lanes_;
     std::vector<NormalTest*> normal_tests_;

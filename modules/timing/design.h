@@ -84,8 +84,12 @@ struct UnitContext {
     CycleScheduler& clock;
     const datapath::Registers& registers;
     const Design& design;
+    unsigned tests_unit = 0;  ///< number of the Tessellation Tests unit that the unit is in
 
     const Timing& timing() const { return design.timing; }
+    /// The same, with another design or other registers.
+    UnitContext with(const Design& other) const { return {clock, registers, other, tests_unit}; }
+    UnitContext with(const datapath::Registers& other) const { return {clock, other, design, tests_unit}; }
 };
 
 }  // namespace tessera

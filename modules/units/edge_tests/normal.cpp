@@ -19,11 +19,11 @@ UnitTiming with_highlight_test(const UnitContext& context) {
 
 }  // namespace
 
-NormalTest::NormalTest(const sc_core::sc_module_name& name, const UnitContext& context, Parts takes)
+NormalTest::NormalTest(const sc_core::sc_module_name& name, const UnitContext& context)
     : Stage(name, context, with_highlight_test(context), 1, context.timing().read_latency(context.timing().normal_map)),
       normal_map("normal_map", context.registers.normal_map.entry_bytes, context.design.direct_memory),
       registers_(context.registers),
-      takes_(takes) {
+      takes_(parts_for_tests(context.tests_unit, context.design.tests_units)) {
     takes_from(context, input);
     delivers_to(context, output, edge_parts);
     reads_through(normal_map, 1);

@@ -35,8 +35,7 @@ class NormalTest : public Stage<NormalOperands, NormalResult> {
     StreamOutput<NormalResult> output{"output"};
     MemoryPort normal_map;
 
-    /// takes: the vertices and edges of a triangle that this unit receives (parts_for_tests).
-    NormalTest(const sc_core::sc_module_name& name, const UnitContext& context, Parts takes = parts_for_tests(0, 1));
+    NormalTest(const sc_core::sc_module_name& name, const UnitContext& context);
 
     const datapath::Saturations& saturations() const { return saturations_; }
 

@@ -7,10 +7,10 @@
 
 namespace tessera {
 
-ViewTest::ViewTest(const sc_core::sc_module_name& name, const UnitContext& context, Parts takes)
+ViewTest::ViewTest(const sc_core::sc_module_name& name, const UnitContext& context)
     : Stage(name, context, context.timing().view_test),
       registers_(context.registers),
-      last_edge_(last_of(takes & triangle_edge_parts)),
+      last_edge_(last_of(parts_for_tests(context.tests_unit, context.design.tests_units) & triangle_edge_parts)),
       corners_(std::size_t{context.timing().pass_or_tessellate.buffer} + 2) {
     takes_from(context, input);
     delivers_to(context, output);

@@ -26,8 +26,7 @@ class ViewTest : public Stage<ViewOperands, ViewResult> {
     std::optional<StreamInput<ScreenCorner>> from_transform;  ///< not in the family design, whose edges carry P's
     StreamOutput<ViewResult> output{"output"};
 
-    /// takes: the vertices and edges of a triangle that this unit receives (parts_for_tests).
-    ViewTest(const sc_core::sc_module_name& name, const UnitContext& context, Parts takes);
+    ViewTest(const sc_core::sc_module_name& name, const UnitContext& context);
 
     void trace_signals(Signals& signals) const override;
 

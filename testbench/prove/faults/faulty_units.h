@@ -3,6 +3,7 @@
 #include <string>
 #include <systemc>
 
+#include "modules/sockets/stream_output.h"
 #include "testbench/check/transport/read_checked_units.h"
 #include "testbench/prove/faults/fault.h"
 #include "testbench/prove/faults/memory_fault.h"

@@ -28,10 +28,9 @@ std::uint64_t hash_of(const datapath::Triangle& triangle) {
 template <class Its, class Item>
 class Recorded : public Its {
   public:
-    template <class... More>
     Recorded(const sc_core::sc_module_name& name, const UnitContext& context, PassRecord& record,
-             PassRecord::Reader reader, std::vector<BankOfEntry> memories, More... more)
-        : Its(name, context, more...), record_(record), reader_(reader), memories_(std::move(memories)) {}
+             PassRecord::Reader reader, std::vector<BankOfEntry> memories)
+        : Its(name, context), record_(record), reader_(reader), memories_(std::move(memories)) {}
 
   protected:
     void reads(const Item& item, Reads& reads) const override {
@@ -111,24 +110,25 @@ std::vector<RecordedPass> PassRecord::take_passes() {
     return std::exchange(passes_, {});
 }
 
-std::unique_ptr<DisplaceVertex> RecordedUnits::displace_vertex(Name name, const UnitContext& context) {
-    return std::make_unique<Recorded<DisplaceVertex, BasePoint>>(
-        name, context, of(context.clock), PassRecord::Reader::displace_vertex,
-        std::vector{BankOfEntry(context.timing().displacement_map, context.registers.displacement_map)});
-}
-
-std::unique_ptr<HeightTestUnit> RecordedUnits::height_test(Name name, const UnitContext& context) {
-    const std::vector<BankOfEntry> memories{
-        BankOfEntry(height_table_timing(context.timing(), context.registers.formats), context.registers.height_table),
-        BankOfEntry(context.timing().displacement_map, context.registers.displacement_map)};
-    return std::make_unique<Recorded<HeightTestUnit, HeightOperands>>(name, context, of(context.clock),
-                                                                      PassRecord::Reader::height_test, memories);
-}
-
-std::unique_ptr<NormalTest> RecordedUnits::normal_test(Name name, const UnitContext& context, Parts takes) {
-    return std::make_unique<Recorded<NormalTest, NormalOperands>>(
-        name, context, of(context.clock), PassRecord::Reader::normal_test,
-        std::vector{BankOfEntry(context.timing().normal_map, context.registers.normal_map)}, takes);
+RecordedUnits::RecordedUnits() {
+    replace<DisplaceVertex>([this](Name name, const UnitContext& context) {
+        return std::make_unique<Recorded<DisplaceVertex, BasePoint>>(
+            name, context, of(context.clock), PassRecord::Reader::displace_vertex,
+            std::vector{BankOfEntry(context.timing().displacement_map, context.registers.displacement_map)});
+    });
+    replace<HeightTestUnit>([this](Name name, const UnitContext& context) {
+        const std::vector<BankOfEntry> memories{
+            BankOfEntry(height_table_timing(context.timing(), context.registers.formats),
+                        context.registers.height_table),
+            BankOfEntry(context.timing().displacement_map, context.registers.displacement_map)};
+        return std::make_unique<Recorded<HeightTestUnit, HeightOperands>>(name, context, of(context.clock),
+                                                                          PassRecord::Reader::height_test, memories);
+    });
+    replace<NormalTest>([this](Name name, const UnitContext& context) {
+        return std::make_unique<Recorded<NormalTest, NormalOperands>>(
+            name, context, of(context.clock), PassRecord::Reader::normal_test,
+            std::vector{BankOfEntry(context.timing().normal_map, context.registers.normal_map)});
+    });
 }
 
 }  // namespace tessera::schedule

@@ -65,9 +65,7 @@ class PassRecord {
 /// Makes units that record their reads, separately for each machine.
 class RecordedUnits : public UnitFactory {
   public:
-    std::unique_ptr<DisplaceVertex> displace_vertex(Name name, const UnitContext& context) override;
-    std::unique_ptr<HeightTestUnit> height_test(Name name, const UnitContext& context) override;
-    std::unique_ptr<NormalTest> normal_test(Name name, const UnitContext& context, Parts takes) override;
+    RecordedUnits();
 
     /// The record of the machine with this clock.
     PassRecord& of(const CycleScheduler& clock) { return records_[&clock]; }

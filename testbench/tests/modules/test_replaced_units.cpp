@@ -40,12 +40,13 @@ class HalvedHeights : public UnitFactory {
   public:
     std::vector<const HeightTestUnit*> halved;
 
-  private:
-    std::unique_ptr<HeightTestUnit> height_test(Name name, const UnitContext& context) override {
-        static const HalvedHeightTest test{};
-        auto unit = std::make_unique<HeightTestUnit>(name, context, test);
-        halved.push_back(unit.get());
-        return unit;
+    HalvedHeights() {
+        replace<HeightTestUnit>([this](Name name, const UnitContext& context) {
+            static const HalvedHeightTest test{};
+            auto unit = std::make_unique<HeightTestUnit>(name, context, test);
+            halved.push_back(unit.get());
+            return unit;
+        });
     }
 };
 
@@ -142,40 +143,38 @@ class PackedDisplaceVertex : public DisplaceVertex {
     bool offered_ = false;
 };
 
-class PackedDisplaceVertices : public UnitFactory {
-    std::unique_ptr<DisplaceVertex> displace_vertex(Name name, const UnitContext& context) override {
-        return std::make_unique<PackedDisplaceVertex>(name, context);
-    }
+struct PackedDisplaceVertices : UnitFactory {
+    PackedDisplaceVertices() { replace<DisplaceVertex, PackedDisplaceVertex>(); }
 };
 
 /// Stalls only the Summed Height Test.
-class StalledHeights : public UnitFactory {
-    std::unique_ptr<HeightTestUnit> height_test(Name name, const UnitContext& context) override {
-        Design design = context.design;
-        design.timing.stalls = {7, 300, 100};
-        return std::make_unique<HeightTestUnit>(name, UnitContext{context.clock, context.registers, design});
+struct StalledHeights : UnitFactory {
+    StalledHeights() {
+        replace<HeightTestUnit>([](Name name, const UnitContext& context) {
+            Design design = context.design;
+            design.timing.stalls = {7, 300, 100};
+            return std::make_unique<HeightTestUnit>(name, context.with(design));
+        });
     }
 };
 
 /// Changes the registers of the Summed Height Test only.
-class OtherThreshold : public UnitFactory {
-  public:
-    explicit OtherThreshold(const datapath::Registers& registers) : registers_(registers) {}
-
-  private:
-    std::unique_ptr<HeightTestUnit> height_test(Name name, const UnitContext& context) override {
-        return std::make_unique<HeightTestUnit>(name, UnitContext{context.clock, registers_, context.design});
+struct OtherThreshold : UnitFactory {
+    explicit OtherThreshold(const datapath::Registers& registers) {
+        replace<HeightTestUnit>([&registers](Name name, const UnitContext& context) {
+            return std::make_unique<HeightTestUnit>(name, context.with(registers));
+        });
     }
-
-    const datapath::Registers& registers_;
 };
 
 /// Changes the latency of Calculate New P only.
-class SlowCalculateNewP : public UnitFactory {
-    std::unique_ptr<CalculateNewP> calculate_new_p(Name name, const UnitContext& context) override {
-        Design design = context.design;
-        design.timing.calculate_new_p.latency = 200;
-        return std::make_unique<CalculateNewP>(name, UnitContext{context.clock, context.registers, design});
+struct SlowCalculateNewP : UnitFactory {
+    SlowCalculateNewP() {
+        replace<CalculateNewP>([](Name name, const UnitContext& context) {
+            Design design = context.design;
+            design.timing.calculate_new_p.latency = 200;
+            return std::make_unique<CalculateNewP>(name, context.with(design));
+        });
     }
 };
 
@@ -192,10 +191,8 @@ class WideLighting : public Lighting {
     }
 };
 
-class WideUnits : public UnitFactory {
-    std::unique_ptr<Lighting> lighting(Name name, const UnitContext& context) override {
-        return std::make_unique<WideLighting>(name, context);
-    }
+struct WideUnits : UnitFactory {
+    WideUnits() { replace<Lighting, WideLighting>(); }
 };
 
 /// An additional unit: halves the light of every corner.

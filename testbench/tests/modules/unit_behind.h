@@ -1,6 +1,5 @@
 #pragma once
 #include <memory>
-#include <type_traits>
 
 #include "modules/pipeline.h"
 
@@ -11,24 +10,16 @@ namespace tessera::testing {
 template <class Before, class Inserted>
 class UnitBehind : public UnitFactory {
   public:
+    UnitBehind() {
+        replace<Before>([this](Name name, const UnitContext& context) {
+            inserted_ = std::make_unique<Inserted>("inserted", context);
+            context.clock.attach(*inserted_);
+            return std::make_unique<Before>(name, context);
+        });
+    }
     const Inserted& inserted() const { return *inserted_; }
 
   private:
-    std::unique_ptr<DisplaceVertex> displace_vertex(Name name, const UnitContext& context) override {
-        insert_behind<DisplaceVertex>(context);
-        return UnitFactory::displace_vertex(name, context);
-    }
-    std::unique_ptr<Lighting> lighting(Name name, const UnitContext& context) override {
-        insert_behind<Lighting>(context);
-        return UnitFactory::lighting(name, context);
-    }
-    template <class Made>
-    void insert_behind(const UnitContext& context) {
-        if (!std::is_same_v<Made, Before>)
-            return;
-        inserted_ = std::make_unique<Inserted>("inserted", context);
-        context.clock.attach(*inserted_);
-    }
     void made(sc_core::sc_module& module) override {
         if (auto* const before = dynamic_cast<Before*>(&module))
             output_of(*before).interpose([this](auto& from, auto& to) {
