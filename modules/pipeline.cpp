@@ -11,33 +11,6 @@
 
 namespace tessera {
 
-Pipeline::Units Pipeline::make(const UnitContext& context, UnitFactory& factory) {
-    Units made;
-    made.get_triangle = factory.make<GetTriangle>("get_triangle", context);
-    made.calculate_new_p = factory.make<CalculateNewP>("calculate_new_p", context);
-    made.displace_vertex = factory.make<DisplaceVertex>("displace_vertex", context);
-    made.transform = factory.make<Transform>("transform", context);
-    if (context.design.work == Work::triangle) {
-        made.pass_or_tessellate = factory.make<PassOrTessellate>("pass_or_tessellate", context);
-        made.tessellation = factory.make<Tessellation>("tessellation", context);
-    } else {
-        made.family_pass_or_tessellate = factory.make<FamilyPassOrTessellate>("pass_or_tessellate", context);
-        made.family_tessellation = factory.make<FamilyTessellation>("tessellation", context);
-    }
-    made.triangle_queue = factory.make<TriangleQueue>("triangle_queue", context);
-    made.lighting = factory.make<Lighting>("lighting", context);
-    return made;
-}
-
-DecidingUnit* Pipeline::Units::deciding() const {
-    return pass_or_tessellate != nullptr ? static_cast<DecidingUnit*>(pass_or_tessellate.get())
-                                         : family_pass_or_tessellate.get();
-}
-
-TessellatingUnit* Pipeline::Units::tessellating() const {
-    return tessellation != nullptr ? static_cast<TessellatingUnit*>(tessellation.get()) : family_tessellation.get();
-}
-
 namespace {
 
 UnitFactory& standard_units() {
@@ -65,8 +38,13 @@ Pipeline::Pipeline(const sc_core::sc_module_name& name, const datapath::Register
                 ? design.clock->period()
                 : clock_period(this->name(), design.timing.cycle_picoseconds),
             design.clock != nullptr ? first_rising_edge(*design.clock) : sc_core::SC_ZERO_TIME),
-      made_(make({clock, registers, design}, factory == nullptr ? standard_units() : *factory)),
-      tessellation_tests("tessellation_tests"),
+      made_({clock, registers, design}, factory == nullptr ? standard_units() : *factory, units_),
+      tessellation_tests("tessellation_tests", design.tests_units,
+                         [&](const char* unit_name, std::size_t number) {
+                             return new TessellationTests(unit_name,
+                                                          {clock, registers, design, static_cast<unsigned>(number)},
+                                                          made_.factory(), units_);
+                         }),
       off_chip_memory("off_chip_memory", clock, design.timing.off_chip_memory, design.timing.stalls,
                       design.queue.off_chip_triangles *
                           (datapath::packed_triangle_bytes(registers.formats) + datapath::packed_triangle_tag_bytes),
@@ -90,13 +68,9 @@ Pipeline::Pipeline(const sc_core::sc_module_name& name, const datapath::Register
       answer_limit_(clock.period() * design.answer_cycles),
       transport_(design.transport),
       random_stalls_(design.timing.stalls.per_mille > 0) {
-    UnitFactory& units = factory == nullptr ? standard_units() : *factory;
-    tessellation_tests.init(design.tests_units, [&](const char* unit_name, std::size_t number) {
-        return new TessellationTests(unit_name, {clock, registers, design, static_cast<unsigned>(number)}, units);
-    });
     attach();
     set_table_areas();
-    wire(units);
+    wire();
     see_where_ports_lead();
     SC_HAS_PROCESS(Pipeline);
     SC_METHOD(see_whether_drained);
@@ -135,12 +109,14 @@ std::unique_ptr<DisplacementMap> Pipeline::make_second_side(const datapath::Regi
 }
 
 /// Joins a unit's port to the table, or to the cache in front of it.
-void Pipeline::join(UnitFactory& factory, MemoryPort& port, TableMemory& table, TableCache* cache) {
-    if (cache == nullptr)
-        factory.join(port, table);
+void Pipeline::join(MemoryPort& port, TableMemory& memory) {
+    const auto table =
+        std::find_if(tables_.begin(), tables_.end(), [&](const Table& t) { return t.memory == &memory; });
+    if (table->cache == nullptr)
+        made_.factory().join(port, memory);
     else
-        factory.join(port, *cache);
-    readers_.push_back({&port, &table == displacement_map_for_tests.get() ? &displacement_map : &table});
+        made_.factory().join(port, *table->cache);
+    readers_.push_back({&port, &memory == displacement_map_for_tests.get() ? &displacement_map : &memory});
 }
 
 namespace {
@@ -155,12 +131,12 @@ bool leads_to(const std::vector<Unit*>& units, const MemoryPort& port) {
 /// Looks for ports that a UnitFactory has joined elsewhere: their memories might not answer, and others may write to
 /// them.
 void Pipeline::see_where_ports_lead() {
-    for (TableMemory* table : {static_cast<TableMemory*>(&displacement_map), static_cast<TableMemory*>(&normal_map),
-                               static_cast<TableMemory*>(&height_table)})
-        if (std::none_of(readers_.begin(), readers_.end(), [&](const TableReader& reader) {
-                return reader.table == table && leads_to(units_, *reader.port);
+    for (const Table& table : tables_)
+        if (table.memory != displacement_map_for_tests.get() &&
+            std::none_of(readers_.begin(), readers_.end(), [&](const TableReader& reader) {
+                return reader.table == table.memory && leads_to(units_, *reader.port);
             }))
-            table->has_no_reader();
+            table.memory->has_no_reader();
     std::vector<MemoryPort*> ports;
     for (const TableReader& reader : readers_)
         ports.push_back(reader.port);
@@ -242,7 +218,8 @@ void Pipeline::see_whether_drained() {
     drained_.notify();
 }
 
-void Pipeline::wire(UnitFactory& factory) {
+void Pipeline::wire() {
+    UnitFactory& factory = made_.factory();
     for (Unit* unit : units_)
         factory.made(*unit);
     for (TessellationTests& tests : tessellation_tests)
@@ -251,29 +228,24 @@ void Pipeline::wire(UnitFactory& factory) {
     triangle_queue.level.bind(get_triangle.queue_level);
     calculate_new_p.to_displace_vertex.bind(displace_vertex.from_calculate_new_p);
     displace_vertex.to_transform.bind(transform.from_displace_vertex);
-    join(factory, displace_vertex.displacement_map, displacement_map, displacement_map_cache.get());
+    join(displace_vertex.displacement_map, displacement_map);
     if (displace_vertex.normal_map)
-        join(factory, *displace_vertex.normal_map, normal_map, normal_map_cache.get());
+        join(*displace_vertex.normal_map, normal_map);
     if (family_tessellation == nullptr)
         wire_triangles();
     else
         wire_families();
     for (TessellationTests& tests : tessellation_tests) {
-        join(factory, tests.height_test.table, height_table, height_table_cache.get());
+        join(tests.height_test.table, height_table);
         if (tests.height_test.displacement_map)
-            join(factory, *tests.height_test.displacement_map,
-                 displacement_map_for_tests != nullptr ? *displacement_map_for_tests : displacement_map,
-                 displacement_map_cache.get());
+            join(*tests.height_test.displacement_map,
+                 displacement_map_for_tests != nullptr ? *displacement_map_for_tests : displacement_map);
         for (NormalTest* normal_test : tests.normal_tests())
-            join(factory, normal_test->normal_map, normal_map, normal_map_cache.get());
+            join(normal_test->normal_map, normal_map);
     }
-    const auto fill = [&](TableCache* cache, TableMemory& table) {
-        if (cache != nullptr)
-            factory.join(cache->table, table);
-    };
-    fill(displacement_map_cache.get(), displacement_map);
-    fill(normal_map_cache.get(), normal_map);
-    fill(height_table_cache.get(), height_table);
+    for (const Table& table : tables_)
+        if (table.cache != nullptr)
+            factory.join(table.cache->table, *table.memory);
     pass_or_tessellate.to_lighting.bind(lighting.from_pass_or_tessellate);
     triangle_queue.to_get_triangle.bind(get_triangle.from_triangle_queue);
     factory.join(triangle_queue.off_chip_memory, off_chip_memory);
@@ -304,44 +276,33 @@ void Pipeline::wire_families() {
     family_pass_or_tessellate->to_triangle_queue.bind(triangle_queue.from_tessellation);
 }
 
-/// Attached to the clock downstream first (cycle_scheduler.h); listed in the order of the figures.
+/// Lists the memories, and attaches units and memories to the clock downstream first (cycle_scheduler.h).
 void Pipeline::attach() {
-    units_ = {&get_triangle, &calculate_new_p, &displace_vertex, &transform};
-    for (TessellationTests& tests : tessellation_tests)
-        for (Unit* unit : tests.units())
-            units_.push_back(unit);
-    std::vector<Unit*> tables{&displacement_map, &normal_map, &height_table};
+    const datapath::Registers& r = registers_;
+    tables_.push_back({&displacement_map, displacement_map_cache.get(), &r.displacement_map});
     if (displacement_map_for_tests != nullptr)
-        tables.insert(tables.begin() + 1, displacement_map_for_tests.get());
-    units_.insert(units_.end(), {&pass_or_tessellate, &tessellation, &triangle_queue, &lighting});
-    units_.insert(units_.end(), tables.begin(), tables.end());
-    units_.push_back(&off_chip_memory);
-    for (const auto* cache : {&displacement_map_cache, &normal_map_cache, &height_table_cache})
-        if (*cache != nullptr)
-            caches_.push_back(cache->get());
-    units_.insert(units_.end(), caches_.begin(), caches_.end());
+        tables_.push_back({displacement_map_for_tests.get(), nullptr, &r.displacement_map});
+    tables_.push_back({&normal_map, normal_map_cache.get(), &r.normal_map});
+    tables_.push_back({&height_table, height_table_cache.get(), &r.height_table});
     clock.attach(off_chip_memory);
-    for (Unit* table : tables)
-        clock.attach(*table);
-    for (TableCache* cache : caches_)
+    for (const Table& table : tables_) {
+        units_.push_back(table.memory);
+        clock.attach(*table.memory);
+        if (table.cache != nullptr)
+            caches_.push_back(table.cache);
+    }
+    units_.push_back(&off_chip_memory);
+    for (TableCache* cache : caches_) {
+        units_.push_back(cache);
         clock.attach(*cache);
+    }
     clock.attach(lighting);
     clock.attach(triangle_queue);
     if (triangle_tessellation != nullptr)
         clock.attach(tessellation);
     clock.attach(pass_or_tessellate);
-    for (TessellationTests& tests : tessellation_tests) {
-        clock.attach(tests.collector());
-        for (const TessellationTests::Lane& lane : tests.lanes())
-            clock.attach(lane.view_test);
-        for (NormalTest* normal_test : tests.normal_tests())
-            clock.attach(*normal_test);
-        clock.attach(tests.height_test);
-        for (const TessellationTests::Lane& lane : tests.lanes())
-            clock.attach(lane.tex_coord_test);
-        for (const TessellationTests::Lane& lane : tests.lanes())
-            clock.attach(lane.calculate_new_u);
-    }
+    for (TessellationTests& tests : tessellation_tests)
+        tests.attach(clock);
     if (family_tessellation != nullptr)
         clock.attach(tessellation);
     clock.attach(transform);
@@ -358,16 +319,11 @@ bool Pipeline::idle() const {
 }
 
 void Pipeline::tables_changed() {
-    const auto lay_out = [](TableMemory& table, TableCache* cache, std::uint32_t columns) {
-        table.lay_out(columns);
-        if (cache != nullptr)
-            cache->lay_out(columns);
-    };
-    lay_out(displacement_map, displacement_map_cache.get(), registers_.displacement_map.columns);
-    if (displacement_map_for_tests != nullptr)
-        lay_out(*displacement_map_for_tests, nullptr, registers_.displacement_map.columns);
-    lay_out(normal_map, normal_map_cache.get(), registers_.normal_map.columns);
-    lay_out(height_table, height_table_cache.get(), registers_.height_table.columns);
+    for (const Table& table : tables_) {
+        table.memory->lay_out(table.layout->columns);
+        if (table.cache != nullptr)
+            table.cache->lay_out(table.layout->columns);
+    }
 }
 
 std::uint64_t Pipeline::passes_under_way() const {

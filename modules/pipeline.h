@@ -4,13 +4,13 @@
 #include <systemc>
 #include <vector>
 
+#include "modules/made_units.h"
 #include "modules/memories/off_chip_memory.h"
 #include "modules/memories/table_cache.h"
 #include "modules/memories/table_memory.h"
 #include "modules/tessellation_tests.h"
 #include "modules/timing/cycle_scheduler.h"
 #include "modules/timing/design.h"
-#include "modules/unit_factory.h"
 #include "modules/units/calculate_new_p.h"
 #include "modules/units/displace_vertex.h"
 #include "modules/units/families/pass_or_tessellate.h"
@@ -47,42 +47,31 @@ namespace tessera {
 ///
 /// External: get_triangle.from_host, lighting.to_rasteriser; and write_table(), for the host.
 class Pipeline : public sc_core::sc_module {
-    struct Units {
-        std::unique_ptr<GetTriangle> get_triangle;
-        std::unique_ptr<CalculateNewP> calculate_new_p;
-        std::unique_ptr<DisplaceVertex> displace_vertex;
-        std::unique_ptr<Transform> transform;
-        std::unique_ptr<PassOrTessellate> pass_or_tessellate;  // with its Tessellation, or
-        std::unique_ptr<Tessellation> tessellation;
-        std::unique_ptr<FamilyPassOrTessellate> family_pass_or_tessellate;  // these two; the others are null
-        std::unique_ptr<FamilyTessellation> family_tessellation;
-        std::unique_ptr<TriangleQueue> triangle_queue;
-        std::unique_ptr<Lighting> lighting;
-
-        DecidingUnit* deciding() const;
-        TessellatingUnit* tessellating() const;
-    };
-
   public:
     CycleScheduler clock;
 
   private:
-    const Units made_;
+    std::vector<Unit*> units_;
+    MadeUnits made_;
 
   public:
-    GetTriangle& get_triangle = *made_.get_triangle;
-    CalculateNewP& calculate_new_p = *made_.calculate_new_p;
-    DisplaceVertex& displace_vertex = *made_.displace_vertex;
-    Transform& transform = *made_.transform;
+    // In the order of the figures.
+    GetTriangle& get_triangle = made_.make<GetTriangle>("get_triangle");
+    CalculateNewP& calculate_new_p = made_.make<CalculateNewP>("calculate_new_p");
+    DisplaceVertex& displace_vertex = made_.make<DisplaceVertex>("displace_vertex");
+    Transform& transform = made_.make<Transform>("transform");
     sc_core::sc_vector<TessellationTests> tessellation_tests;
-    PassOrTessellate* const triangle_pass_or_tessellate = made_.pass_or_tessellate.get();  ///< null: family design
-    Tessellation* const triangle_tessellation = made_.tessellation.get();
-    FamilyPassOrTessellate* const family_pass_or_tessellate = made_.family_pass_or_tessellate.get();
-    FamilyTessellation* const family_tessellation = made_.family_tessellation.get();  ///< null: triangle design
-    DecidingUnit& pass_or_tessellate = *made_.deciding();
-    TessellatingUnit& tessellation = *made_.tessellating();
-    TriangleQueue& triangle_queue = *made_.triangle_queue;
-    Lighting& lighting = *made_.lighting;
+    // Those of the other design are null.
+    PassOrTessellate* const triangle_pass_or_tessellate =
+        made_.make_for<PassOrTessellate>(Work::triangle, "pass_or_tessellate");
+    Tessellation* const triangle_tessellation = made_.make_for<Tessellation>(Work::triangle, "tessellation");
+    FamilyPassOrTessellate* const family_pass_or_tessellate =
+        made_.make_for<FamilyPassOrTessellate>(Work::family, "pass_or_tessellate");
+    FamilyTessellation* const family_tessellation = made_.make_for<FamilyTessellation>(Work::family, "tessellation");
+    DecidingUnit& pass_or_tessellate = the_one<DecidingUnit>({triangle_pass_or_tessellate, family_pass_or_tessellate});
+    TessellatingUnit& tessellation = the_one<TessellatingUnit>({triangle_tessellation, family_tessellation});
+    TriangleQueue& triangle_queue = made_.make<TriangleQueue>("triangle_queue");
+    Lighting& lighting = made_.make<Lighting>("lighting");
     OffChipMemory off_chip_memory;
     DisplacementMap displacement_map;
     std::unique_ptr<DisplacementMap> displacement_map_for_tests;  ///< its second side; null: none
@@ -150,15 +139,21 @@ class Pipeline : public sc_core::sc_module {
         const TableMemory* table;
     };
 
-    static Units make(const UnitContext& context, UnitFactory& factory);
-    void wire(UnitFactory& factory);
+    /// A table's memory, or the second side of a dual-port one.
+    struct Table {
+        TableMemory* memory;
+        TableCache* cache;  ///< null: none
+        const datapath::TableLayout* layout;
+    };
+
+    void wire();
     void wire_triangles();
     void wire_families();
     std::unique_ptr<TableCache> make_cache(const char* name, const datapath::TableLayout& layout,
                                            const MemoryTiming& timing, const StallParameters& stalls);
     std::unique_ptr<DisplacementMap> make_second_side(const datapath::Registers& registers, const Design& design);
     void set_table_areas();
-    void join(UnitFactory& factory, MemoryPort& port, TableMemory& table, TableCache* cache);
+    void join(MemoryPort& port, TableMemory& memory);
     void see_where_ports_lead();
     bool watch(MemoryPort& port);
     void attach();
@@ -176,7 +171,7 @@ class Pipeline : public sc_core::sc_module {
     const sc_core::sc_time answer_limit_;
     Transport transport_;
     bool random_stalls_;
-    std::vector<Unit*> units_;
+    std::vector<Table> tables_;
     std::vector<TableCache*> caches_;
 };
 

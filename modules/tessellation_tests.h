@@ -1,10 +1,9 @@
 #pragma once
-#include <memory>
 #include <systemc>
 #include <vector>
 
-#include "modules/timing/design.h"
-#include "modules/unit_factory.h"
+#include "modules/made_units.h"
+#include "modules/timing/cycle_scheduler.h"
 #include "modules/units/edge_tests/calculate_new_u.h"
 #include "modules/units/edge_tests/collect_tests.h"
 #include "modules/units/edge_tests/height_test.h"
@@ -44,33 +43,24 @@ namespace tessera {
 ///       one such unit or three, one for each edge of a triangle, which share the memories.
 /// Waits for Transform (base triangles), the Summed Height Table, the normal map; held back by Pass or Tessellate.
 class TessellationTests : public sc_core::sc_module {
-    struct Units {
-        std::unique_ptr<CalculateNewU> calculate_new_u;
-        std::unique_ptr<TexCoordTest> tex_coord_test;
-        std::unique_ptr<HeightTestUnit> height_test;
-        std::unique_ptr<NormalTest> normal_test;
-        std::unique_ptr<ViewTest> view_test;
-        // One of these; the others are null.
-        std::unique_ptr<CollectTests> collect_tests;
-        std::unique_ptr<SequenceTests> sequence_tests;
-        std::unique_ptr<FamilySequenceTests> family_sequence_tests;
-        // Only in the family design.
-        std::vector<std::unique_ptr<CalculateNewU>> further_calculate_new_u;
-        std::vector<std::unique_ptr<TexCoordTest>> further_tex_coord_tests;
-        std::vector<std::unique_ptr<ViewTest>> further_view_tests;
-        std::vector<std::unique_ptr<NormalTest>> further_normal_tests;
-    };
-    const Units made_;
+    MadeUnits made_;
 
   public:
-    CalculateNewU& calculate_new_u = *made_.calculate_new_u;
-    TexCoordTest& tex_coord_test = *made_.tex_coord_test;
-    HeightTestUnit& height_test = *made_.height_test;  ///< the Summed Height Test, or the test in its place
-    NormalTest& normal_test = *made_.normal_test;
-    ViewTest& view_test = *made_.view_test;
-    CollectTests* const collect_tests = made_.collect_tests.get();     ///< null: cheapest first
-    SequenceTests* const sequence_tests = made_.sequence_tests.get();  ///< null: in parallel, or of families
-    FamilySequenceTests* const family_sequence_tests = made_.family_sequence_tests.get();
+    CalculateNewU& calculate_new_u = made_.make<CalculateNewU>("calculate_new_u");
+    TexCoordTest& tex_coord_test = made_.make<TexCoordTest>("tex_coord_test");
+    /// The Summed Height Test, or the test in its place.
+    HeightTestUnit& height_test =
+        made_.make<HeightTestUnit>(functions_of(made_.context().registers.formats.height_test).unit());
+    NormalTest& normal_test = made_.make<NormalTest>("normal_test");
+    ViewTest& view_test = made_.make<ViewTest>("view_test");
+    // One of these joins an edge's results; the others are null.
+    CollectTests* const collect_tests =
+        made_.context().design.test_order == TestOrder::parallel ? &made_.make<CollectTests>("collect_tests") : nullptr;
+    SequenceTests* const sequence_tests =
+        collect_tests == nullptr ? made_.make_for<SequenceTests>(Work::triangle, "sequence_tests") : nullptr;
+    FamilySequenceTests* const family_sequence_tests =
+        collect_tests == nullptr ? made_.make_for<FamilySequenceTests>(Work::family, "sequence_tests") : nullptr;
+    Unit& collector = the_one<Unit>({collect_tests, sequence_tests, family_sequence_tests});
 
     /// A lane of cheap tests; the triangle design has one.
     struct Lane {
@@ -81,26 +71,24 @@ class TessellationTests : public sc_core::sc_module {
     const std::vector<Lane>& lanes() const { return lanes_; }
     const std::vector<NormalTest*>& normal_tests() const { return normal_tests_; }
 
-    TessellationTests(const sc_core::sc_module_name& name, const UnitContext& context, UnitFactory& factory);
+    /// units: the machine's, to which these are added in the order of figure 8, further lanes and Normal Tests last.
+    TessellationTests(const sc_core::sc_module_name& name, const UnitContext& context, UnitFactory& factory,
+                      std::vector<Unit*>& units);
+
+    StreamOutput<TestedEdge>& to_pass_or_tessellate(std::size_t lane = 0) const;
 
     /// Binds the units inside to one another. Call once.
     void wire();
-
-    /// The unit that joins an edge's results.
-    Unit& collector() const;
-    StreamOutput<TestedEdge>& to_pass_or_tessellate(std::size_t lane = 0) const;
-
-    /// In the order of figure 8, further lanes and Normal Tests last.
-    std::vector<Unit*> units() const;
+    /// Downstream first.
+    void attach(CycleScheduler& clock);
 
   private:
     void wire_lanes();
     template <class Collector>
-    void take_results(Collector& collector);
-    static Units make(const UnitContext& context, UnitFactory& factory);
+    void take_results(Collector& its);
 
-    std::vector<Lane> lanes_;
-    std::vector<NormalTest*> normal_tests_;
+    std::vector<Lane> lanes_{{calculate_new_u, tex_coord_test, view_test}};
+    std::vector<NormalTest*> normal_tests_{&normal_test};
 };
 
 }  // namespace tessera

@@ -60,7 +60,7 @@ class NormalTest : public Stage<NormalOperands, NormalResult> {
     void take_corners(const NormalOperands& edge);
 
     const datapath::Registers& registers_;
-    Parts takes_;
+    Parts takes_;  // the vertices and edges of a triangle that this unit receives
     PerTriangle<Corners> corners_{1};
     std::array<datapath::Direction, 3> compared_{};  // N'_i, N'_j, N'_ij of the part worked on last
     datapath::Saturations saturations_;

@@ -177,7 +177,7 @@ void add_timed(Equations& list, const MachineSetup& setup, const HostedMachine& 
                                                          : p.triangle_pass_or_tessellate->from_tessellation_tests)
         joined += input.taken();
     list.add("edges taken from tessellation_tests = edges", joined, edges);
-    list.add("edges collected = edges", tests([](const auto& t) { return items(t.collector()); }), edges);
+    list.add("edges collected = edges", tests([](const auto& t) { return items(t.collector); }), edges);
 
     const Read displacement_map(p.displacement_map, p.displacement_map_cache);
     const Read normal_map(p.normal_map, p.normal_map_cache);
