@@ -337,37 +337,18 @@ std::size_t Pipeline::most_ahead_of_parts() const {
                                           : triangle_pass_or_tessellate->most_ahead_of_parts();
 }
 
-std::uint64_t Pipeline::displacement_map_reads() const {
-    std::uint64_t reads = displace_vertex.displacement_map.reads();
-    for (const TessellationTests& tests : tessellation_tests)
-        if (tests.height_test.displacement_map)
-            reads += tests.height_test.displacement_map->reads();
-    return reads;
-}
-
-std::uint64_t Pipeline::normal_map_reads() const {
-    std::uint64_t reads = displace_vertex.normal_map ? displace_vertex.normal_map->reads() : 0;
-    for (const TessellationTests& tests : tessellation_tests)
-        for (const NormalTest* normal_test : tests.normal_tests())
-            reads += normal_test->normal_map.reads();
-    return reads;
-}
-
-std::uint64_t Pipeline::height_table_reads() const {
-    std::uint64_t reads = 0;
-    for (const TessellationTests& tests : tessellation_tests)
-        reads += tests.height_test.table.reads();
-    return reads;
+std::uint64_t Pipeline::reads(const TableMemory& table) const {
+    std::uint64_t sum = 0;
+    for (const TableReader& reader : readers_)
+        if (reader.table == &table)
+            sum += reader.port->reads();
+    return sum;
 }
 
 datapath::Saturations Pipeline::saturations() const {
-    datapath::Saturations all = displace_vertex.saturations();
-    all += transform.saturations();
-    for (const TessellationTests& tests : tessellation_tests)
-        for (const NormalTest* normal_test : tests.normal_tests())
-            all += normal_test->saturations();
-    all += tessellation.saturations();
-    all += lighting.saturations();
+    datapath::Saturations all;
+    for (const Unit* unit : units_)
+        all += unit->saturations();
     return all;
 }
 

@@ -128,9 +128,9 @@ class Pipeline : public sc_core::sc_module {
     /// Most triangles that waited for their first part at the unit that joins the parts.
     std::size_t most_ahead_of_parts() const;
     std::uint64_t edges_tested() const { return pass_or_tessellate.counts().edges_tested; }
-    std::uint64_t displacement_map_reads() const;
-    std::uint64_t normal_map_reads() const;
-    std::uint64_t height_table_reads() const;
+    std::uint64_t displacement_map_reads() const { return reads(displacement_map); }
+    std::uint64_t normal_map_reads() const { return reads(normal_map); }
+    std::uint64_t height_table_reads() const { return reads(height_table); }
     datapath::Saturations saturations() const;
 
   private:
@@ -154,6 +154,7 @@ class Pipeline : public sc_core::sc_module {
     std::unique_ptr<DisplacementMap> make_second_side(const datapath::Registers& registers, const Design& design);
     void set_table_areas();
     void join(MemoryPort& port, TableMemory& memory);
+    std::uint64_t reads(const TableMemory& table) const;
     void see_where_ports_lead();
     bool watch(MemoryPort& port);
     void attach();

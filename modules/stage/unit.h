@@ -4,6 +4,7 @@
 #include <string>
 #include <systemc>
 
+#include "modules/datapath/format.h"
 #include "modules/stage/area.h"
 #include "modules/timing/activity.h"
 #include "modules/timing/cycle_scheduler.h"
@@ -29,6 +30,9 @@ class Unit : public CycleProcess, public sc_core::sc_module {
     /// Highlight Test) is not counted.
     const Area& area() const { return area_; }
 
+    /// Values that its arithmetic has saturated.
+    const datapath::Saturations& saturations() const { return saturations_; }
+
     bool idle() const { return activity_.level() == 0; }
 
     /// Declares the unit's signals, or shows their values at the end of a cycle (modules/stage/signals.h). For every
@@ -48,6 +52,7 @@ class Unit : public CycleProcess, public sc_core::sc_module {
     CycleScheduler& clock_;
     Activity activity_;
     Area area_;  // of a table set by Pipeline, else in the constructor
+    datapath::Saturations saturations_;
 };
 
 /// occupied_cycles() of a unit that holds one item at a time and sends it on in parts: the first a latency after its

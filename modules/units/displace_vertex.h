@@ -33,14 +33,11 @@ class DisplaceVertex : public Stage<BasePoint, DisplacedPoint> {
 
     DisplaceVertex(const sc_core::sc_module_name& name, const UnitContext& context);
 
-    const datapath::Saturations& saturations() const { return saturations_; }
-
   protected:
     void reads(const BasePoint& point, Reads& reads) const override;
     DisplacedPoint process(const BasePoint& point, const Entries& entries) override;
 
     const datapath::Registers& registers_;
-    datapath::Saturations saturations_;
 };
 
 }  // namespace tessera

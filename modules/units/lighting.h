@@ -21,13 +21,10 @@ class Lighting : public Stage<TriangleToLight, LitTriangle> {
 
     Lighting(const sc_core::sc_module_name& name, const UnitContext& context);
 
-    const datapath::Saturations& saturations() const { return saturations_; }
-
   protected:
     LitTriangle process(const TriangleToLight& triangle, const Entries& entries) override;
 
     const datapath::Registers& registers_;
-    datapath::Saturations saturations_;
 };
 
 }  // namespace tessera

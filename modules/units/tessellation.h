@@ -23,15 +23,12 @@ class TessellatingUnit : public Unit {
     const std::array<std::uint64_t, 5>& made_into() const { return made_into_; }
     std::uint64_t children() const { return made_into_[1] + 2 * made_into_[2] + 3 * made_into_[3] + 4 * made_into_[4]; }
 
-    const datapath::Saturations& saturations() const { return saturations_; }
-
   protected:
     TessellatingUnit(const sc_core::sc_module_name& name, const UnitContext& context);
 
     const datapath::Registers& registers_;
     UnitTiming timing_;
     std::array<std::uint64_t, 5> made_into_{};
-    datapath::Saturations saturations_;
 };
 
 /// Tessellation (paper figures 6 and 7): builds the two, three or four children of a triangle from its vertices and

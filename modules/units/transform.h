@@ -26,7 +26,6 @@ class Transform : public Stage<DisplacedPoint, ScreenPoint> {
 
     Transform(const sc_core::sc_module_name& name, const UnitContext& context);
 
-    const datapath::Saturations& saturations() const { return saturations_; }
     std::uint64_t positions() const { return positions_; }
     std::uint64_t normals() const { return normals_; }
 
@@ -34,7 +33,6 @@ class Transform : public Stage<DisplacedPoint, ScreenPoint> {
     ScreenPoint process(const DisplacedPoint& point, const Entries& entries) override;
 
     const datapath::Registers& registers_;
-    datapath::Saturations saturations_;
     std::uint64_t positions_ = 0;
     std::uint64_t normals_ = 0;
 };

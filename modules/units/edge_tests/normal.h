@@ -37,8 +37,6 @@ class NormalTest : public Stage<NormalOperands, NormalResult> {
 
     NormalTest(const sc_core::sc_module_name& name, const UnitContext& context);
 
-    const datapath::Saturations& saturations() const { return saturations_; }
-
     void trace_signals(Signals& signals) const override;
 
   protected:
@@ -63,7 +61,6 @@ class NormalTest : public Stage<NormalOperands, NormalResult> {
     Parts takes_;  // the vertices and edges of a triangle that this unit receives
     PerTriangle<Corners> corners_{1};
     std::array<datapath::Direction, 3> compared_{};  // N'_i, N'_j, N'_ij of the part worked on last
-    datapath::Saturations saturations_;
 };
 
 }  // namespace tessera
