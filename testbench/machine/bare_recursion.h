@@ -1,12 +1,11 @@
 #pragma once
-#include <array>
 #include <cstdint>
+#include <cstring>
 #include <vector>
 
 #include "modules/datapath/cull.h"
-#include "modules/datapath/height_tests.h"
-#include "modules/datapath/parameters.h"
 #include "modules/datapath/tessellate.h"
+#include "testbench/machine/bare_edges.h"
 #include "testbench/machine/emitted_mesh.h"
 #include "testbench/machine/machine_setup.h"
 
@@ -14,13 +13,10 @@ namespace tessera {
 
 /// The datapath without SystemC: the same functions on the same tables, called in one loop over a work list. It bounds
 /// the speed of a simulation of the machine; its mesh is the pipeline's, bit for bit (checked in every run).
-class BareRecursion {
+class BareRecursion : public BareEdges<BareRecursion> {
   public:
     /// `setup` must outlive it. Later changes of its thresholds count, those of its tables do not.
     explicit BareRecursion(const MachineSetup& setup);
-
-    /// Counts so far. The machine normalises N_ij in two units and counts each; Lighting is not part of this.
-    const datapath::Saturations& saturations() const { return saturations_; }
 
     /// Tessellates every base triangle; returns the number of edges evaluated. `mesh` is cleared first, but keeps its
     /// memory. Stops after `most_edges` edges, with the mesh incomplete.
@@ -37,32 +33,27 @@ class BareRecursion {
     template <class Visitor>
     std::uint64_t walk(Visitor& visitor, std::uint64_t most_edges = UINT64_MAX);
 
-    /// Completes a base triangle's vertices as the machine does in its first pass.
-    void complete_base(datapath::Triangle& triangle);
-    /// Evaluates edge k, and decides it by the setup's registers, without the Highlight Test.
-    void evaluate_edge(datapath::TrianglePass& pass, int k);
-    /// Evaluates all edges with every test, pass.split, and the tests that kept edges whole (Triangle::stopped_by).
-    void evaluate(datapath::TrianglePass& pass);
-    /// What the design's height test makes of an edge, on or off.
-    datapath::HeightDecision test_heights(const datapath::HeightEdge& edge) const;
+    const datapath::Registers& scene_registers() const { return setup_.registers; }
+    std::uint64_t code_entry(std::uint64_t index) const { return setup_.heights()[index]; }
+    std::uint64_t normal_entry(std::uint64_t index) const { return normals_[index]; }
+    std::uint64_t height_entry(std::uint64_t offset) const {
+        static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "tables are read as their bytes lie in memory");
+        std::uint64_t entry = 0;
+        std::memcpy(&entry, &height_table_[offset], sizeof entry);
+        return entry & height_entry_mask_;
+    }
 
   private:
     datapath::ChildIndices children_of(const datapath::TrianglePass& pass) const;
     void transform_normals(datapath::Triangle& triangle);
-    datapath::Direction map_normal_at(const datapath::TexCoord& t) const;
-    std::uint32_t code_at(const datapath::TexCoord& t) const;
-    /// The map's entries that are read at t (datapath::map_entries).
-    template <class Entry>
-    std::array<std::uint64_t, 4> entries_at(const datapath::TexCoord& t, const datapath::TableLayout& layout,
-                                            const std::vector<Entry>& map) const;
 
     const MachineSetup& setup_;
-    std::vector<std::uint64_t> normals_;  // packed as in the normal map
-    const datapath::HeightTestFunctions& height_test_;
+    std::vector<std::uint64_t> normals_;       // packed as in the normal map
     std::vector<unsigned char> height_table_;  // as in the memory; 8 bytes more, since an entry is read as 8 bytes
     std::uint64_t height_entry_mask_ = 0;
-    datapath::Saturations saturations_;
 };
+
+extern template class BareEdges<BareRecursion>;
 
 template <class Visitor>
 std::uint64_t BareRecursion::walk(Visitor& visitor, std::uint64_t most_edges) {
@@ -91,7 +82,7 @@ std::uint64_t BareRecursion::walk(Visitor& visitor, std::uint64_t most_edges) {
             pass.new_vertices = 0;
             if (pass.split != 0) {
                 std::size_t number = 0;
-                datapath::tessellate(pass, r.triangulation, r.formats, saturations_,
+                datapath::tessellate(pass, r.triangulation, r.formats, saturations,
                                      [&](const datapath::Triangle& child) {
                                          waiting.push_back({child, visitor.child(children.children[number++])});
                                      });

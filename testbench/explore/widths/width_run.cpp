@@ -123,7 +123,7 @@ class Walk {
         result_.invariants = check_invariants(mesh_, setup_);
         result_.texel_borders = borders_.count();
         result_.end_to_end = compare_end_to_end(setup_, inputs_, mesh_);
-        result_.saturations = datapath_.saturations();
+        result_.saturations = datapath_.saturations;
         result_.saturations += others_;
         result_.position_rms =
             result_.positions == 0 ? 0 : std::sqrt(squares_ / static_cast<double>(result_.positions));

@@ -4,17 +4,7 @@
 #include <deque>
 #include <vector>
 
-#include "modules/datapath/bump.h"
-#include "modules/datapath/displace.h"
-#include "modules/datapath/edge_tests.h"
-#include "modules/datapath/map_address.h"
-#include "modules/datapath/map_entry.h"
-#include "modules/datapath/midpoint.h"
-#include "modules/datapath/normalise.h"
-#include "modules/datapath/rectangle.h"
 #include "modules/datapath/tessellate.h"
-#include "modules/datapath/transform.h"
-#include "modules/datapath/triangle_pass.h"
 #include "testbench/prove/random_edges/edge_machine.h"
 
 /// The recursion, using only the datapath's functions.
@@ -28,12 +18,10 @@ using tessera::Tables;
 /// The recursion: triangles waiting first in, first out.
 class WorkList {
   public:
-    WorkList(Machine& machine, const std::vector<datapath::Triangle>& base) : machine_(machine) {
-        for (datapath::Triangle triangle : base) {
-            for (datapath::Vertex& vertex : triangle.vertices)
-                machine.complete(vertex);
-            waiting.push_back(triangle);
-        }
+    WorkList(Machine& machine, const std::vector<datapath::Triangle>& base)
+        : waiting(base.begin(), base.end()), machine_(machine) {
+        for (datapath::Triangle& triangle : waiting)
+            machine.complete_base(triangle);
     }
 
     std::deque<datapath::Triangle> waiting;

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <vector>
 
+#include "modules/datapath/pack_triangle.h"
 #include "testbench/prove/random_edges/random_machine.h"
 
 namespace tessera {
@@ -33,9 +35,10 @@ class Trial {
   private:
     void try_machine(RandomMachine& made, std::uint64_t edges);
     void try_edge(Machine& machine, const DirectEdge& direct, const Vertex& i, const Vertex& j);
-    void set_thresholds(datapath::TestParameters& tests, const datapath::Formats& formats,
-                        const EdgeMeasures& measures);
+    void set_thresholds(datapath::TestParameters& tests, const datapath::Formats& formats, const EdgeMeasures& measures,
+                        const datapath::HeightDecision& heights);
     std::uint64_t threshold(std::uint64_t measure, std::uint64_t usual, std::uint64_t& at_limit);
+    void try_packed(const Machine& machine, const TrianglePass& pass, const Vertex& inserted);
     void try_moved(Machine& machine, const TrianglePass& here, const Vertex& inserted);
     void fault(std::uint64_t& count, const std::string& what, const Machine& machine, const TrianglePass& pass,
                const Vertex& inserted);
@@ -52,16 +55,16 @@ void Trial::fault(std::uint64_t& count, const std::string& what, const Machine& 
     const auto& f = machine.registers.formats;
     const auto& tests = machine.registers.tests;
     result_.first_fault = fmt::format(
-        "edge {} of machine {}: {}{}{}{}\n  tests {:06b}; thresholds: normal {}, summed height {}, view {}, "
+        "edge {} of machine {}: {}{}{}{}\n  tests {:06b}; {} test; thresholds: normal {}, height {}, view {}, "
         "highlight {}; map {} x {}; bits.fraction: position {}.{}, normal {}.{}, texture {}.{}, screen "
         "{}.{}, "
         "displacement {}, summed height {}",
         result_.edges, result_.machines, what, text_of("i", pass.triangle.vertices[0]),
         text_of("j", pass.triangle.vertices[1]), text_of("inserted", inserted), unsigned{pass.edges[0].tests},
-        tests.normal_threshold, tests.height_threshold(), tests.view_threshold, tests.highlight_normal_threshold,
-        machine.registers.map.width, machine.registers.map.height, f.position.bits, f.position.fraction, f.normal.bits,
-        f.normal.fraction, f.texture.bits, f.texture.fraction, f.screen.bits, f.screen.fraction, f.displacement.bits,
-        f.summed_height.bits);
+        functions_of(f.height_test).name, tests.normal_threshold, tests.height_thresholds[0], tests.view_threshold,
+        tests.highlight_normal_threshold, machine.registers.map.width, machine.registers.map.height, f.position.bits,
+        f.position.fraction, f.normal.bits, f.normal.fraction, f.texture.bits, f.texture.fraction, f.screen.bits,
+        f.screen.fraction, f.displacement.bits, f.summed_height.bits);
 }
 
 std::uint64_t Trial::threshold(std::uint64_t measure, std::uint64_t usual, std::uint64_t& at_limit) {
@@ -73,14 +76,20 @@ std::uint64_t Trial::threshold(std::uint64_t measure, std::uint64_t usual, std::
 }
 
 void Trial::set_thresholds(datapath::TestParameters& tests, const datapath::Formats& formats,
-                           const EdgeMeasures& measures) {
+                           const EdgeMeasures& measures, const datapath::HeightDecision& heights) {
     const auto unit = static_cast<std::uint64_t>(formats.normal.highest);
     tests.normal_threshold = static_cast<std::uint32_t>(threshold(measures.normal, unit, result_.at_limit[0]));
+    const datapath::HeightTestFunctions& test = functions_of(formats.height_test);
     const bool by_area = tests.summed_height_unit == datapath::SummedHeightUnit::area;
-    const auto full = static_cast<std::uint64_t>(formats.displacement.highest);
-    tests.height_thresholds[0] = static_cast<std::int64_t>(
-        by_area ? threshold(measures.summed_height / measures.rectangle_area, full, result_.at_limit[1])
-                : threshold(measures.summed_height, full * measures.rectangle_area, result_.at_limit[1]));
+    const auto registers = test.thresholds(formats);
+    std::uint64_t uncounted = 0;
+    for (std::size_t k = 0; k < registers.size(); ++k) {
+        const std::uint64_t value = heights.values.at(test.compared < 0 ? k : static_cast<std::size_t>(test.compared)) /
+                                    (by_area ? test.weight(heights) : 1);
+        const std::uint64_t most = (std::uint64_t{1} << std::max(1, registers[k].bits - 1)) - 1;
+        tests.height_thresholds.at(k) = static_cast<std::int64_t>(
+            threshold(value, std::min(most, 2 * value + 1), k == 0 ? result_.at_limit[1] : uncounted));
+    }
     tests.view_threshold = static_cast<std::uint32_t>(std::min<std::uint64_t>(
         threshold(measures.length, std::max<std::uint64_t>(1, measures.length * 2), result_.at_limit[2]), UINT32_MAX));
     tests.highlight_normal_threshold =
@@ -101,20 +110,32 @@ void Trial::try_edge(Machine& machine, const DirectEdge& direct, const Vertex& i
     machine.insert_vertex(other, 0);
     inserted_ = inserted_vertex(one, 0);
     const EdgeMeasures measures = direct.measure(i, j, inserted_);
-    set_thresholds(machine.registers.tests, machine.registers.formats, measures);
+    const datapath::Formats& formats = machine.registers.formats;
+    const datapath::HeightDecision heights = machine.test_heights(Machine::height_edge(i, j, inserted_.texture));
+    set_thresholds(machine.registers.tests, formats, measures, heights);
     machine.decide(one, 0);
     machine.decide(other, 0);
 
     ++result_.edges;
-    if (!same_bits(inserted_, inserted_vertex(other, 0)) || !(one.edges[0].texture == inserted_.texture))
+    if (!same_bits(inserted_, inserted_vertex(other, 0)))
         fault(result_.unlike_reversed, "the vertex inserted on (j, i) differs", machine, one, inserted_);
-    if (one.edges[0].tests != other.edges[0].tests || one.split != other.split)
+    if (one.edges[0].tests != other.edges[0].tests || one.edges[0].rank != other.edges[0].rank ||
+        one.split != other.split)
         fault(result_.unlike_reversed,
               fmt::format("the tests of (j, i) differ: {:06b}", unsigned{other.edges[0].tests}), machine, one,
               inserted_);
     if (const char* const what = direct.fault_of_vertex(i, j, inserted_))
         fault(result_.unlike_direct, fmt::format("{} differs from its definition", what), machine, one, inserted_);
-    const std::uint8_t tests = direct.tests(i, j, inserted_, measures);
+    const datapath::HeightTestFunctions& height_test = functions_of(formats.height_test);
+    for (unsigned k = 0; k < height_test.traced(formats); ++k)
+        if (const auto& value = height_test.values.at(k); value.bits < 64 && heights.values.at(k) >> value.bits != 0)
+            fault(result_.unlike_direct,
+                  fmt::format("the height test's {} does not fit {} bits", value.name, value.bits), machine, one,
+                  inserted_);
+    std::uint8_t tests = direct.tests(i, j, inserted_, measures);
+    if (formats.height_test != datapath::HeightTest::summed_height)
+        tests = static_cast<std::uint8_t>((tests & ~datapath::summed_height_bit) |
+                                          (one.edges[0].tests & datapath::summed_height_bit));
     if (tests != one.edges[0].tests)
         fault(result_.unlike_direct, fmt::format("the tests differ from their definitions: {:06b}", unsigned{tests}),
               machine, one, inserted_);
@@ -124,8 +145,22 @@ void Trial::try_edge(Machine& machine, const DirectEdge& direct, const Vertex& i
     result_.splits += one.split & 1U;
     result_.behind += i.screen.in_front && j.screen.in_front ? 0U : 1U;
     result_.degenerate += inserted_.normal == datapath::Direction{} ? 1U : 0U;
-    if ((random_.bits() & 3) == 0)
+    if ((random_.bits() & 3) == 0) {
+        try_packed(machine, one, inserted_);
         try_moved(machine, one, inserted_);
+    }
+}
+
+/// Every field of the vertices fits its format: a queue entry holds them.
+void Trial::try_packed(const Machine& machine, const TrianglePass& pass, const Vertex& inserted) {
+    const datapath::Formats& formats = machine.registers.formats;
+    datapath::Triangle triangle = pass.triangle;
+    triangle.vertices[2] = inserted;
+    std::vector<unsigned char> entry(packed_triangle_bytes(formats) + datapath::packed_triangle_tag_bytes);
+    const bool fits = pack_triangle(triangle, formats, entry.data());
+    const datapath::Triangle back = datapath::unpack_triangle(entry.data(), formats);
+    if (!fits || !std::equal(back.vertices.begin(), back.vertices.end(), triangle.vertices.begin(), same_bits))
+        fault(result_.unlike_direct, "a vertex does not fit its queue entry", machine, pass, inserted);
 }
 
 /// Tries the same edge shifted by whole periods, from its other end: the other copy of a closed surface's seam.
@@ -154,7 +189,8 @@ void Trial::try_moved(Machine& machine, const TrianglePass& here, const Vertex& 
     Vertex back = inserted_vertex(there, 0);
     back.texture.u -= du;
     back.texture.v -= dv;
-    if (!same_bits(back, inserted) || there.edges[0].tests != here.edges[0].tests)
+    if (!same_bits(back, inserted) || there.edges[0].tests != here.edges[0].tests ||
+        there.edges[0].rank != here.edges[0].rank)
         fault(result_.unlike_moved,
               fmt::format("the edge differs when shifted by {}, {}: {:06b}", du, dv, unsigned{there.edges[0].tests}),
               machine, here, inserted);

@@ -23,8 +23,8 @@ constexpr std::uint64_t fewest_to_judge = 100'000;
 constexpr double least_share = 0.01;
 
 std::string one_sided(const EdgeTrial& trial) {
-    constexpr const char* names[] = {"Normal Test",    "Summed Height Test", "View Test",
-                                     "Tex Coord Test", "Generation Test",    "Highlight Test"};
+    constexpr const char* names[] = {"Normal Test",    "height test",     "View Test",
+                                     "Tex Coord Test", "Generation Test", "Highlight Test"};
     for (std::size_t k = 0; k < trial.yes.size(); ++k) {
         const double share = static_cast<double>(trial.yes[k]) / static_cast<double>(trial.edges);
         if (trial.edges >= fewest_to_judge && (share < least_share || share > 1 - least_share))
@@ -41,15 +41,14 @@ void print(const EdgeTrial& trial, std::uint64_t seed, double seconds) {
     fmt::print("random edges, seed {}: {} edges, {} machines with usual, narrow, wide and any formats in turn\n", seed,
                number(trial.edges), number(trial.machines));
     fmt::print(
-        "  true: Normal Test {:.1f} %, Summed Height Test {:.1f} %, View Test {:.1f} %, Tex Coord Test "
+        "  true: Normal Test {:.1f} %, height test {:.1f} %, View Test {:.1f} %, Tex Coord Test "
         "{:.1f} %, "
         "Generation Test {:.1f} %, Highlight Test {:.1f} %; split {:.1f} %\n",
         percent(trial.yes[0]), percent(trial.yes[1]), percent(trial.yes[2]), percent(trial.yes[3]),
         percent(trial.yes[4]), percent(trial.yes[5]), percent(trial.splits));
     fmt::print(
-        "  thresholds equal to the measured value: Normal Test {}, Summed Height Test {}, View Test {}, Highlight "
-        "Test "
-        "{}\n",
+        "  thresholds equal to the measured value: Normal Test {}, height test {}, View Test {}, Highlight "
+        "Test {}\n",
         number(trial.at_limit[0]), number(trial.at_limit[1]), number(trial.at_limit[2]), number(trial.at_limit[3]));
     fmt::print("  {} with an end behind the near plane, {} zero inserted normals, {} tried again shifted by periods\n",
                number(trial.behind), number(trial.degenerate), number(trial.moved));

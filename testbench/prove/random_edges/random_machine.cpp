@@ -11,28 +11,46 @@ namespace {
 using datapath::Format, datapath::Formats, datapath::Direction;
 
 Formats any_formats(Random& random, FormatWidths widths) {
+    using Limits = datapath::FormatLimits;
     Formats formats;
     if (widths == FormatWidths::usual)
         return formats;
-    const auto bits = [&](int low, int high) {
-        const int third = (high - low) / 3;
+    const auto bits = [&](const Limits::Range& range) {
+        const int low = range.least, high = range.most, third = (high - low) / 3;
         return widths == FormatWidths::narrow ? random.integer32(low, low + third)
                : widths == FormatWidths::wide ? random.integer32(high - third, high)
                                               : random.integer32(low, high);
     };
-    const int position = bits(8, 32), screen = bits(8, 31), normal = bits(6, 18);
+    const int position = bits(Limits::position_bits), screen = bits(Limits::screen_bits);
+    const int normal = bits(Limits::normal_bits);
     formats.position = Format::make_signed(position, random.integer32(0, position - 1));
-    formats.view_distance = Format::make_signed(position, formats.position.fraction - random.integer32(0, 3));
+    const int shift = random.integer32(0, random.chance(80) ? 3 : Limits::view_distance_shift.most);
+    formats.view_distance = Format::make_signed(position, formats.position.fraction - shift);
     formats.normal = Format::make_signed(normal, random.chance(70) ? normal - 2 : random.integer32(0, normal - 2));
-    const int fraction = bits(0, 12);
-    formats.texture = Format::make_unsigned(bits(6, 12) + fraction + 1, fraction);
-    const int displacement = bits(1, 16);
+    const int fraction = bits(Limits::texture_fraction);
+    const Limits::Range integer{random.chance(80) ? 6 : Limits::texture_integer.least, Limits::texture_integer.most};
+    formats.texture = Format::make_unsigned(bits(integer) + fraction + 1, fraction);
+    const int displacement = bits(Limits::displacement_bits);
     formats.displacement = Format::make_unsigned(displacement, displacement);
     formats.screen = Format::make_signed(screen, random.integer32(0, screen - 1));
     if (random.coin())
         formats.filter = datapath::MapFilter::bilinear;
-    formats.tex_coord_fraction = std::min(fraction, random.integer32(0, 2));
+    formats.tex_coord_fraction = std::min(fraction, random.integer32(0, Limits::tex_coord_fraction.most));
     return formats;
+}
+
+/// Mostly the Summed Height Test, which is also compared with its definition.
+void choose_height_test(Random& random, Formats& formats) {
+    using Limits = datapath::FormatLimits;
+    if (random.chance(70))
+        return;
+    const auto last = static_cast<std::int64_t>(datapath::height_tests().size()) - 1;
+    formats.height_test = static_cast<datapath::HeightTest>(random.integer(0, last));
+    if (formats.height_test != datapath::HeightTest::rank)
+        return;
+    formats.rank_bits = random.integer32(Limits::rank_bits.least, Limits::rank_bits.most);
+    formats.bound_bits = random.coin() ? 0 : random.integer32(Limits::bound_bits.least, Limits::bound_bits.most);
+    formats.distances = random.coin();
 }
 
 Direction any_unit(Random& random, const Formats& formats) {
@@ -66,6 +84,7 @@ datapath::TestParameters any_tests(Random& random, const Formats& formats) {
     tests.generation_test = on();
     tests.highlight_test = random.coin();
     tests.summed_height_unit = random.coin() ? datapath::SummedHeightUnit::sum : datapath::SummedHeightUnit::area;
+    tests.rank_per_pixel = random.coin();
     tests.generation_limit = random.natural(0, 15);
     const Direction half = any_unit(random, formats);
     tests.half_vector = {half.x, half.y, half.z};
@@ -86,6 +105,8 @@ datapath::TransformParameters any_transform(Random& random, const Formats& forma
     transform.row_w = row(random.integer(-reach / 2, 4 * reach));
     transform.exponent = random.integer32(0, 14);
     transform.near_plane = std::max<std::int64_t>(1, random.integer(0, reach / 64));
+    for (std::int64_t& coordinate : transform.eye)
+        coordinate = random.any_size((std::int64_t{1} << (datapath::eye_bits - 1)) - 1);
     return transform;
 }
 
@@ -94,6 +115,7 @@ datapath::TransformParameters any_transform(Random& random, const Formats& forma
 RandomMachine make_random_machine(Random& random, FormatWidths widths) {
     datapath::Registers registers;
     registers.formats = any_formats(random, widths);
+    choose_height_test(random, registers.formats);
     Formats& formats = registers.formats;
     const auto mode = [&] { return random.coin() ? datapath::AddressMode::repeat : datapath::AddressMode::clamp; };
     const std::uint32_t most = 1U << std::min(6, formats.texture.bits - 1 - formats.texture.fraction);
@@ -101,6 +123,11 @@ RandomMachine make_random_machine(Random& random, FormatWidths widths) {
     registers.map.height = random.chance(12) ? 1 : random.natural(1, most);
     registers.map.address_u = mode();
     registers.map.address_v = mode();
+    const auto covered = [&](std::uint32_t side, datapath::AddressMode on) {
+        return side + (on == datapath::AddressMode::clamp ? random.natural(0, 3) : 0);
+    };
+    registers.covered.columns = covered(registers.map.width, registers.map.address_u);
+    registers.covered.rows = covered(registers.map.height, registers.map.address_v);
     const std::size_t texels = std::size_t{registers.map.width} * registers.map.height;
     // The narrowest table that fits the sum of the whole map, or a wider one.
     int bits = 8;
@@ -114,6 +141,9 @@ RandomMachine make_random_machine(Random& random, FormatWidths widths) {
     for (std::size_t k = 0; k < texels; ++k)
         normals.push_back(any_unit(random, formats));
     Tables tables = make_tables(registers, codes, normals);
+    if (formats.height_test != datapath::HeightTest::summed_height)
+        for (std::uint64_t& entry : tables.heights)
+            entry = random.bits() >> (64 - height_entry_bits(formats));
     registers.tests = any_tests(random, formats);
     registers.displacement = {static_cast<std::int32_t>(random.any_size(formats.position.highest)),
                               static_cast<std::int32_t>(random.any_size(formats.position.highest))};
@@ -141,8 +171,11 @@ datapath::Vertex make_random_vertex(Random& random, Machine& machine, const data
             std::clamp<std::int64_t>(std::int64_t{other} + random.any_size(std::int64_t{6} << fraction), 0, border));
     };
     datapath::Vertex v;
+    const bool on_lattice = formats.height_test == datapath::HeightTest::rank && random.chance(90);
     v.texture.u = coordinate(map.width, map.address_u, near != nullptr ? near->texture.u : 0);
     v.texture.v = coordinate(map.height, map.address_v, near != nullptr ? near->texture.v : 0);
+    for (std::uint32_t* const c : {&v.texture.u, &v.texture.v})
+        *c = on_lattice ? *c >> fraction << fraction : *c;
     const auto position = [&](std::int32_t other) {
         const std::int64_t reach = formats.position.highest / 2;
         const std::int64_t value =

@@ -15,7 +15,8 @@ struct RandomMachine {
 };
 
 /// Maps up to 64 x 64, one of four 1 x N or N x 1: noise, extremes (0 and full scale), steps. Formats up to
-/// a job's widest. The camera's near plane passes through the vertices.
+/// a job's widest. Any height test; the table of another than the Summed Height Test holds random bits. The camera's
+/// near plane passes through the vertices.
 RandomMachine make_random_machine(Random& random, FormatWidths widths);
 
 /// A complete base vertex at a random place: on the map, its borders and, if it repeats, periods beyond; or near

@@ -12,7 +12,7 @@ struct BareRun {
     explicit BareRun(const MachineSetup& setup) {
         BareRecursion bare(setup);
         edges = bare.run(mesh);
-        saturations = bare.saturations();
+        saturations = bare.saturations;
     }
     EmittedMesh mesh;
     std::uint64_t edges = 0;

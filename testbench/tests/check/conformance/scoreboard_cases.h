@@ -212,8 +212,7 @@ struct Case {
         return evaluate(triangle, random.coin());
     }
     datapath::TrianglePass evaluate(datapath::Triangle triangle, bool base) {
-        for (datapath::Vertex& v : triangle.vertices)
-            machine.complete(v);
+        machine.complete_base(triangle);
         datapath::TrianglePass result = machine.evaluate(triangle);
         result.tested = true;
         result.new_vertices = base ? 7 : 0;

@@ -87,8 +87,7 @@ TrianglePass both_ways(Machine& machine, const Vertex& i, const Vertex& j) {
 
 bool symmetric(const TrianglePass& pass) {
     return pass.edges[0].tests == pass.edges[1].tests && (pass.split & 1) == (pass.split >> 1 & 1) &&
-           same_bits(inserted_vertex(pass, 0), inserted_vertex(pass, 1)) &&
-           pass.edges[0].texture == pass.new_vertex[0].texture;
+           same_bits(inserted_vertex(pass, 0), inserted_vertex(pass, 1));
 }
 
 }  // namespace
