@@ -27,7 +27,7 @@ void promise_message(std::string_view message, std::string_view file) {
 const std::vector<FuzzTarget>& fuzz_targets() {
     static const std::vector<FuzzTarget> targets{
         {"patches", check_patches}, {"ply", check_ply},         {"map", check_map},
-        {"toml", check_toml},       {"surface", check_surface}, {"datapath", check_datapath},
+        {"toml", check_toml},       {"surface", check_surface},
     };
     return targets;
 }

@@ -32,7 +32,6 @@ void check_ply(std::string_view bytes);
 void check_map(std::string_view bytes);
 void check_toml(std::string_view bytes);
 void check_surface(std::string_view bytes);
-void check_datapath(std::string_view bytes);
 
 const std::vector<FuzzTarget>& fuzz_targets();
 

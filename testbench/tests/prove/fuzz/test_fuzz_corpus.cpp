@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "testbench/common/random.h"
 #include "testbench/prove/fuzz/fuzz_target.h"
 #include "testbench/tests/support/source_folder.h"
 
@@ -63,20 +62,6 @@ TEST_CASE("fuzz corpus: TOML of a job") {
 }
 TEST_CASE("fuzz corpus: TOML of a surface") {
     run_corpus("surface");
-}
-TEST_CASE("fuzz corpus: datapath") {
-    run_corpus("datapath");
-}
-
-TEST_CASE("fuzz: the datapath holds its guarantees on random bytes") {
-    Random random(1);
-    for (int k = 0; k < 300; ++k) {
-        std::string bytes(static_cast<std::size_t>(random.integer(0, 900)), '\0');
-        for (char& byte : bytes)
-            byte = static_cast<char>(random.bits() & 255);
-        INFO("bytes " << k);
-        CHECK_NOTHROW(fuzz::check_datapath(bytes));
-    }
 }
 
 TEST_CASE("fuzz corpus: a folder for each target and nothing else, with small files, below 1 MiB in total") {
