@@ -8,8 +8,13 @@
 
 namespace tessera {
 
+MemoryPort::Socket::Socket(const char* name, const MemoryPort& its_port)
+    : simple_initiator_socket(name), port(its_port) {}
+
+MemoryPort::Socket::~Socket() = default;
+
 MemoryPort::MemoryPort(const char* name, std::size_t entry_bytes, bool use_direct_memory)
-    : socket(name),
+    : socket(name, *this),
       entry_bytes_(static_cast<unsigned>(entry_bytes)),
       mask_(entry_bytes >= 8 ? ~std::uint64_t{0} : (std::uint64_t{1} << (8 * entry_bytes)) - 1),
       use_direct_memory_(use_direct_memory) {

@@ -25,7 +25,15 @@ namespace tessera {
 /// Errors: responses other than OK, and violations of the protocol, are SC_ERRORs that name the port.
 class MemoryPort {
   public:
-    tlm_utils::simple_initiator_socket<MemoryPort, 32, MemoryProtocol> socket;
+    /// Leads from an object of the unit to the port.
+    class Socket : public tlm_utils::simple_initiator_socket<MemoryPort, 32, MemoryProtocol> {
+      public:
+        const MemoryPort& port;
+
+        Socket(const char* name, const MemoryPort& its_port);
+        ~Socket() override;
+    };
+    Socket socket;
 
     /// entry_bytes: at least 1; at most 8 for read() and entry().
     MemoryPort(const char* name, std::size_t entry_bytes, bool use_direct_memory);

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <functional>
 #include <systemc>
 #include <tlm>
@@ -30,13 +31,16 @@ class StreamOutput : public tlm::tlm_initiator_socket<32, Stream<Payload>>,
 
     using Socket::bind;
     void bind(StreamInput<Payload>& input) {
+        input_ = &input;
         if (const Interposer interposer = std::exchange(interposer_, nullptr)) {
             interposer(*this, input);
         } else {
-            input_ = &input;
+            direct_ = true;
             Socket::bind(input);
         }
     }
+    /// The input that the items reach, possibly through something that is no unit; null: bound to another socket.
+    const StreamInput<Payload>* input() const { return input_; }
 
     /// Timed mode: `unit` is called when a delayed item is accepted.
     void clocked_by(CycleScheduler& clock, CycleProcess& unit) {
@@ -60,6 +64,8 @@ class StreamOutput : public tlm::tlm_initiator_socket<32, Stream<Payload>>,
         (*this)->b_transport(packed, delay);
     }
 
+    /// Timed mode: items offered so far.
+    std::uint64_t sent() const { return sent_; }
     /// True if nothing is on offer.
     bool free() const { return on_offer_ == nullptr; }
 
@@ -70,7 +76,8 @@ class StreamOutput : public tlm::tlm_initiator_socket<32, Stream<Payload>>,
         if (wires_.formats != nullptr)
             packed_ = through_wires(payload);
         Payload& sent = wires_.formats != nullptr ? packed_ : payload;
-        if (input_ != nullptr ? input_->offer(sent) : offer_by_tlm(sent))
+        ++sent_;
+        if (direct_ ? input_->offer(sent) : offer_by_tlm(sent))
             return true;
         on_offer_ = &sent;
         return false;
@@ -131,7 +138,9 @@ class StreamOutput : public tlm::tlm_initiator_socket<32, Stream<Payload>>,
 
     CycleScheduler* clock_ = nullptr;
     CycleProcess* unit_ = nullptr;
-    StreamInput<Payload>* input_ = nullptr;  // bound by bind(), with nothing in between: called without TLM
+    StreamInput<Payload>* input_ = nullptr;
+    bool direct_ = false;  // nothing is in between: the input is called without TLM
+    std::uint64_t sent_ = 0;
     const Payload* on_offer_ = nullptr;
     Interposer interposer_;
     Wires wires_;

@@ -180,8 +180,6 @@ bool GetTriangle::send_parts(Branch<Item>& branch, std::uint64_t cycle) {
     branch.left = static_cast<Parts>(branch.left & ~part);
     make(branch.offered, taken_, part, work_);
     branch.next = cycle + timing_.interval;
-    if (branch.takes == all_parts)
-        ++parts_sent_;
     const bool was_taken = branch.output->send(branch.offered);
     if (branch.left != 0)
         wake_at(branch.next);
@@ -240,7 +238,7 @@ void GetTriangle::trace_signals(Signals& signals) const {
         signals.value("new_normals", 3, (parts & normal_parts) >> first_normal_part);
         signals.flag("tested", (parts & edge_parts) != 0);
     }
-    if (signals.when(signals.changed("parts_sent", parts_sent_)))
+    if (signals.when(signals.changed("parts_sent", parts_sent())))
         signals.value("part", part_bits, geometry_.offered.tag.part);
     Parts tests_left = 0;
     for (const Branch<TestOperands>& branch : tests_)

@@ -45,11 +45,11 @@ class GetTriangle : public Unit {
     std::uint64_t host_triangles() const { return host_triangles_; }
     std::uint64_t queue_triangles() const { return queue_triangles_; }
     /// Timed mode: vertices, normals and edges sent to Calculate New P.
-    std::uint64_t parts_sent() const { return parts_sent_; }
+    std::uint64_t parts_sent() const { return to_calculate_new_p.sent(); }
 
     std::string describe_contents() const override;
     std::uint64_t occupied_cycles() const override {
-        return one_at_a_time_cycles(timing_, activity_.items_in(), parts_sent_);
+        return one_at_a_time_cycles(timing_, activity_.items_in(), parts_sent());
     }
     void trace_signals(Signals& signals) const override;
 
@@ -93,7 +93,6 @@ class GetTriangle : public Unit {
     bool below_watermark_ = true;  // the Triangle Queue
     std::uint64_t host_triangles_ = 0;
     std::uint64_t queue_triangles_ = 0;
-    std::uint64_t parts_sent_ = 0;
 
     sc_core::sc_event host_may_send_{"host_may_send"};  // functional mode
     bool host_waits_ = false;

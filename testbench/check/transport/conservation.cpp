@@ -1,6 +1,8 @@
 #include "testbench/check/transport/conservation.h"
 
+#include <map>
 #include <string>
+#include <systemc>
 #include <utility>
 
 #include "modules/datapath/bilinear.h"
@@ -60,16 +62,10 @@ void add_triangles(Equations& list, const MachineSetup& setup, const HostedMachi
              counts.finished - counts.culled);
 }
 
-/// Vertices sent to Tessellation Tests, none with families. With three units, each receives the two ends of its edge.
-std::uint64_t bumps(const Pipeline& p, std::uint64_t vertices) {
-    if (p.family_tessellation != nullptr)
-        return 0;
-    return p.tessellation_tests.size() == 1 ? vertices : 2 * vertices;
-}
-
-/// Requests to the normal map: with families, Displace Vertex bumps the vertices, otherwise the tests do.
+/// Requests to the normal map, by the unit that bumps the vertices and by the Normal Tests. Three Tessellation Tests units
+/// each receive the two ends of their edge.
 std::uint64_t normal_map_requests(const Pipeline& p, std::uint64_t vertices, std::uint64_t normal) {
-    return (p.family_tessellation != nullptr ? vertices : bumps(p, vertices)) + normal;
+    return (p.tessellation_tests.size() == 1 ? vertices : 2 * vertices) + normal;
 }
 
 /// `midpoints` of edges are displaced, `normal` and `summed_height` of `edges` edges are evaluated; of the latter,
@@ -100,117 +96,107 @@ void add_reads(Equations& list, const Pipeline& p, const Tested& tested, std::ui
     list.add("positions of transform = vertices and midpoints", p.transform.positions(), vertices + midpoints);
 }
 
-/// A table, or the cache through which the units read it.
-struct Read {
-    const TableMemory& table;
-    const TableCache* cache;
-
-    Read(const TableMemory& its_table, const std::unique_ptr<TableCache>& its_cache)
-        : table(its_table), cache(its_cache.get()) {}
-    std::uint64_t requests() const { return cache != nullptr ? items(*cache) : items(table); }
-    std::uint64_t entries() const { return cache != nullptr ? cache->entries_read() : table.transactions(); }
-    void add_fills(Equations& list) const {
-        if (cache != nullptr)
-            list.add("lines read of " + std::string(table.basename()) + " = fills of its cache", items(table),
-                     cache->fills());
+/// Calls `each` with every object inside, at any depth.
+template <class Each>
+void for_each_inside(const sc_core::sc_object& object, Each&& each) {
+    for (const sc_core::sc_object* child : object.get_child_objects()) {
+        each(*child);
+        for_each_inside(*child, each);
     }
+}
+
+/// What memory ports have asked for.
+struct Asked {
+    std::uint64_t requests = 0, entries = 0;
 };
 
+/// The sum over the ports of the machine for which `which` is true.
+template <class Which>
+Asked asked(const Pipeline& p, Which&& which) {
+    Asked sum;
+    for_each_inside(p, [&](const sc_core::sc_object& object) {
+        const auto* const socket = dynamic_cast<const MemoryPort::Socket*>(&object);
+        if (socket == nullptr || !which(socket->port))
+            return;
+        sum.requests += socket->port.requests();
+        sum.entries += socket->port.reads();
+    });
+    return sum;
+}
+
+/// For the streams and memories that the machine has: an item that is sent is taken, and counted by a unit that has no
+/// other input; a memory receives the requests of its ports.
+void add_connections(Equations& list, const HostedMachine& machine) {
+    const Pipeline& p = machine.pipeline;
+    const auto name_of = [&](const sc_core::sc_object& object) {
+        const std::string name = object.name(), prefix = std::string(p.name()) + ".";
+        return name.compare(0, prefix.size(), prefix) == 0 ? name.substr(prefix.size()) : name;
+    };
+    std::map<const sc_core::sc_object*, std::vector<std::uint64_t>> taken;  // by the unit's inputs
+    const auto add_stream = [&](const auto& output) {
+        const auto* const input = output.input();
+        if (input == nullptr)
+            return;
+        list.add("items taken by " + name_of(*input) + " = sent by " + name_of(output), input->taken(), output.sent());
+        taken[input->get_parent_object()].push_back(input->taken());
+    };
+    for_each_output(machine.host, add_stream);
+    for_each_inside(p, [&](const sc_core::sc_object& object) {
+        if (const auto* module = dynamic_cast<const sc_core::sc_module*>(&object))
+            for_each_output(*module, add_stream);
+    });
+    for (const Unit* unit : p.units()) {
+        const std::string name = name_of(*unit);
+        if (taken[unit].size() == 1)
+            list.add("items in " + name + " = taken by its input", items(*unit), taken[unit].front());
+        const Asked its = asked(p, [&](const MemoryPort& port) { return port.memory() == unit; });
+        if (dynamic_cast<const MemoryServer*>(unit) != nullptr)
+            list.add("requests received by " + name + " = made by its ports", items(*unit), its.requests);
+        if (const auto* table = dynamic_cast<const TableMemory*>(unit))
+            list.add("entries of " + name + " = read by its ports", table->transactions(), its.entries);
+        if (const auto* cache = dynamic_cast<const TableCache*>(unit))
+            list.add("entries of " + name + " = read by its ports", cache->entries_read(), its.entries);
+    }
+}
+
+/// What no stream tells: how many items each unit sends.
 void add_timed(Equations& list, const MachineSetup& setup, const HostedMachine& machine, const Tested& tested) {
     const auto& [vertices, edges, midpoints, normal, summed_height, by_codes, off_lattice] = tested;
     const Pipeline& p = machine.pipeline;
-    const auto& counts = p.pass_or_tessellate.counts();
     const bool families = setup.design.work == Work::family;
-    const std::uint64_t rounds = families ? p.get_triangle.host_triangles() + p.get_triangle.queue_triangles()
-                                          : counts.passes + counts.normal_passes;
-    list.add(families ? "triangles in get_triangle = taken" : "triangles in get_triangle = decided",
-             items(p.get_triangle), rounds);
-    list.add(
-        families ? "families in pass_or_tessellate = triangles taken" : "triangles in pass_or_tessellate = decided",
-        items(p.pass_or_tessellate), rounds);
-    list.add("triangles in triangle_queue = taken by it", items(p.triangle_queue), p.triangle_queue.taken());
-    list.add("triangles in lighting = finished - culled", items(p.lighting), counts.finished - counts.culled);
+    const std::uint64_t triangles = p.get_triangle.host_triangles() + p.get_triangle.queue_triangles();
+    list.add("triangles in get_triangle = taken by it", items(p.get_triangle), triangles);
+    list.add("triangles in pass_or_tessellate = taken by get_triangle", items(p.pass_or_tessellate), triangles);
 
-    // geometry branch: a base triangle's vertices, midpoints, and each new vertex's normal, which families include
+    // a base triangle's vertices, midpoints, and each new vertex's normal, which families include
     const std::uint64_t parts = p.get_triangle.parts_sent();
-    list.add("parts in calculate_new_p = sent by get_triangle", items(p.calculate_new_p), parts);
-    list.add("parts in displace_vertex = sent by get_triangle", items(p.displace_vertex), parts);
-    list.add("parts in transform = sent by get_triangle", items(p.transform), parts);
-    list.add("parts taken from transform = sent by get_triangle",
-             families ? p.family_tessellation->from_transform.taken()
-                      : p.triangle_pass_or_tessellate->from_transform.taken(),
-             parts);
     list.add("positions and normals of transform = parts", p.transform.positions() + p.transform.normals(),
              families ? 2 * parts : parts);
 
-    // tests: vertices end in the Normal Test
-    const auto tests = [&](auto figure) { return sum_over_tests(p, figure); };
-    const auto lanes = [&](auto figure) {
-        return tests([&](const auto& t) {
-            std::uint64_t sum = 0;
-            for (const TessellationTests::Lane& lane : t.lanes())
-                sum += figure(lane);
-            return sum;
-        });
-    };
-    list.add("parts in calculate_new_u = vertices and edges",
-             lanes([](const auto& lane) { return items(lane.calculate_new_u); }), bumps(p, vertices) + edges);
-    list.add("parts in normal_test = vertices and its edges", tests([](const auto& t) {
-                 std::uint64_t sum = 0;
-                 for (const NormalTest* test : t.normal_tests())
-                     sum += items(*test);
-                 return sum;
-             }),
-             bumps(p, vertices) + normal);
-    list.add("edges in tex_coord_test = edges", lanes([](const auto& lane) { return items(lane.tex_coord_test); }),
-             edges);
     const datapath::HeightTestFunctions& height_test = functions_of(setup.registers.formats.height_test);
-    list.add("edges in " + height_test.unit() + " = its edges",
-             tests([](const auto& t) { return items(t.height_test); }), summed_height);
-    list.add("edges in view_test = edges", lanes([](const auto& lane) { return items(lane.view_test); }), edges);
-    if (!families)
+    list.add("edges taken by " + height_test.unit() + " = its edges",
+             sum_over_tests(p, [](const auto& t) { return t.height_test.input.taken(); }), summed_height);
+    if (!families) {
+        list.add("edges in view_test = edges", sum_over_tests(p, [](const auto& t) { return items(t.view_test); }),
+                 edges);
         list.add("vertices taken by view_test = vertices, once per unit",
-                 tests([](const auto& t) { return t.view_test.from_transform->taken(); }),
+                 sum_over_tests(p, [](const auto& t) { return t.view_test.from_transform->taken(); }),
                  vertices * p.tessellation_tests.size());
-    std::uint64_t joined = 0;
-    for (const StreamInput<TestedEdge>& input : families ? p.family_pass_or_tessellate->from_tessellation_tests
-                                                         : p.triangle_pass_or_tessellate->from_tessellation_tests)
-        joined += input.taken();
-    list.add("edges taken from tessellation_tests = edges", joined, edges);
-    list.add("edges collected = edges", tests([](const auto& t) { return items(t.collector); }), edges);
-
-    const Read displacement_map(p.displacement_map, p.displacement_map_cache);
-    const Read normal_map(p.normal_map, p.normal_map_cache);
-    const Read height_table(p.height_table, p.height_table_cache);
-    const TableMemory* const second_side = p.displacement_map_for_tests.get();
-    const std::uint64_t by_displace_vertex = p.displace_vertex.displacement_map.reads();
-    if (second_side == nullptr) {
-        list.add("entries of displacement_map = read", displacement_map.entries(), p.displacement_map_reads());
-        list.add("requests to displacement_map = vertices, midpoints and texels", displacement_map.requests(),
-                 vertices + midpoints + by_codes);
-    } else {
-        list.add("entries of displacement_map = read by displace_vertex", displacement_map.entries(),
-                 by_displace_vertex);
-        list.add("entries of displacement_map_for_tests = read by its test", second_side->transactions(),
-                 p.displacement_map_reads() - by_displace_vertex);
-        list.add("requests to displacement_map = vertices and midpoints", displacement_map.requests(),
-                 vertices + midpoints);
-        list.add("requests to displacement_map_for_tests = edges tested by codes", items(*second_side), by_codes);
     }
-    list.add("entries of normal_map = read", normal_map.entries(), p.normal_map_reads());
-    list.add("entries of " + height_test.table() + " = read by its test", height_table.entries(),
-             p.height_table_reads());
-    for (const Read& read : {displacement_map, normal_map, height_table})
-        read.add_fills(list);
-    list.add("requests to normal_map = vertices and edges of normal_test", normal_map.requests(),
-             normal_map_requests(p, vertices, normal));
-    const std::uint64_t asked = height_test.requests * (summed_height - by_codes - off_lattice);
-    list.add("requests to " + height_test.table() + " = those of each edge tested by table", height_table.requests(),
-             setup.registers.tests.summed_height_test ? asked : 0);
+    list.add("edges collected = edges", sum_over_tests(p, [](const auto& t) { return items(t.collector); }), edges);
+
+    const auto add_requests = [&](const std::string& table, const std::string& of, std::uint64_t expected) {
+        const Asked its = asked(p, [&](const MemoryPort& port) { return port.socket.basename() == table; });
+        list.add("requests to " + table + " = " + of, its.requests, expected);
+    };
+    add_requests("displacement_map", "vertices, midpoints and texels", vertices + midpoints + by_codes);
+    add_requests("normal_map", "vertices and edges of normal_test", normal_map_requests(p, vertices, normal));
+    const std::uint64_t by_table = height_test.requests * (summed_height - by_codes - off_lattice);
+    add_requests(height_test.table(), "those of each edge tested by table",
+                 setup.registers.tests.summed_height_test ? by_table : 0);
+    add_requests("off_chip_memory", "spills and refills", 2 * p.triangle_queue.spilled());
 
     list.add("triangles spilled = refilled", p.triangle_queue.spilled(), p.triangle_queue.refilled());
-    list.add("requests to off_chip_memory = spills and refills", items(p.off_chip_memory),
-             2 * p.triangle_queue.spilled());
     list.add("bytes read from off_chip_memory = written", p.off_chip_memory.bytes_read(),
              p.off_chip_memory.bytes_written());
 }
@@ -242,8 +228,10 @@ void add_machine(Equations& list, const MachineSetup& setup, const HostedMachine
              counts.edges_tested, edges);
     add_reads(list, p, tested, datapath::map_entry_count(setup.registers.formats),
               functions_of(setup.registers.formats.height_test).codes);
-    if (setup.design.transport == Transport::non_blocking)
+    if (setup.design.transport == Transport::non_blocking) {
+        add_connections(list, machine);
         add_timed(list, setup, machine, tested);
+    }
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 
 namespace tessera {
 
-/// Two counters of different units that must be equal after a run that drained.
+/// Two counters that must be equal after a run that drained.
 struct Conservation {
     std::string name;
     std::uint64_t left = 0;
@@ -17,8 +17,8 @@ struct Conservation {
     bool holds() const { return left == right; }
 };
 
-/// Each unit receives as many triangles, parts, edges and reads as its source sends. In functional mode, includes only
-/// counts that exist there.
+/// Every input takes as many items as the output bound to it sends, every memory as many requests as its ports make, and
+/// triangles, parts, edges and reads agree with one another. In functional mode, includes only counts that exist there.
 std::vector<Conservation> conservation(const Simulation& simulation);
 
 /// Sum of `figure` over all Tessellation Tests units.
