@@ -2,6 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "modules/timing/all_units.h"
 #include "testbench/job/design_preset.h"
 #include "testbench/job/job_keys.h"
 #include "testbench/job/job_paths.h"
@@ -25,6 +30,43 @@ Job moved_to(const std::filesystem::path& folder, const Job& job) {
                 set_value(moved, key, rebase_path(std::get<std::string>(key.get(job)), job.folder, folder));
     }
     return moved;
+}
+
+std::string head_of(const KeyTable& table) {
+    return fmt::format(
+        "### {}\n\n{}\n\n| key | default | range | unit | meaning |\n| --- | --- | --- | --- | --- |\n",
+        table.name.empty() ? "Top level" : '`' + table.name + '`', table.description);
+}
+
+/// The columns of a key after its name.
+std::string facts_of(const Key& key, const std::string& meaning) {
+    return fmt::format("| `{}` | {} | {} | {} |\n", toml_value(default_of(key)), range_text(key), key.unit, meaning);
+}
+
+/// Keys that differ only in the unit or memory that they begin with.
+struct KeyRow {
+    const Key* key;
+    std::string kind;                 ///< the name with * for the unit's; empty: of no unit
+    std::string facts;                ///< the meaning without the unit
+    std::vector<std::string> owners;  ///< names of the units
+};
+
+KeyRow row_of(const Key& key) {
+    KeyRow row{&key, {}, {}, {}};
+    const std::string table = "timing.";
+    const auto look_among = [&](const auto& specs) {
+        for (const auto& spec : specs) {
+            const std::string owner = spec.name;
+            if (key.name.rfind(table + owner + '_', 0) != 0)
+                continue;
+            row.kind = table + '*' + key.name.substr(table.size() + owner.size());
+            row.facts = facts_of(key, key.description.substr(key.description.find(": ") + 2));
+            row.owners = {owner};
+        }
+    };
+    look_among(all_units);
+    look_among(all_table_memories);
+    return row;
 }
 
 }  // namespace
@@ -69,12 +111,33 @@ std::string dump_short_job(const Job& job, const std::filesystem::path& folder, 
 std::string document_keys() {
     std::string out;
     for (const KeyTable& table : job_tables()) {
-        out += fmt::format(
-            "{}### {}\n\n{}\n\n| key | default | range | unit | meaning |\n| --- | --- | --- | --- | --- |\n",
-            out.empty() ? "" : "\n", table.name.empty() ? "Top level" : '`' + table.name + '`', table.description);
+        out += (out.empty() ? "" : "\n") + head_of(table);
+        for (const Key& key : table.keys)
+            out += fmt::format("| `{}` {}", key.name, facts_of(key, key.description));
+    }
+    return out;
+}
+
+std::string summarise_keys() {
+    std::string out;
+    for (const KeyTable& table : job_tables()) {
+        out += (out.empty() ? "" : "\n") + head_of(table);
+        std::vector<KeyRow> rows;
         for (const Key& key : table.keys) {
-            out += fmt::format("| `{}` | `{}` | {} | {} | {} |\n", key.name, toml_value(default_of(key)),
-                               range_text(key), key.unit, key.description);
+            KeyRow row = row_of(key);
+            const auto same = std::find_if(rows.begin(), rows.end(), [&](const KeyRow& other) {
+                return !row.kind.empty() && other.kind == row.kind && other.facts == row.facts;
+            });
+            if (same == rows.end())
+                rows.push_back(std::move(row));
+            else
+                same->owners.push_back(row.owners.front());
+        }
+        for (const KeyRow& row : rows) {
+            if (row.owners.size() > 1)
+                out += fmt::format("| `{}`: `{}` {}", row.kind, fmt::join(row.owners, "`, `"), row.facts);
+            else
+                out += fmt::format("| `{}` {}", row.key->name, facts_of(*row.key, row.key->description));
         }
     }
     return out;

@@ -53,13 +53,6 @@ std::string as_text(const BoundCondition& condition) {
     return condition.setting + (where.empty() ? "" : " (" + where + ")");
 }
 
-std::string bound_condition_settings() {
-    std::string text;
-    for (const BoundCondition& condition : bound_conditions)
-        text += (text.empty() ? "" : ", ") + as_text(condition);
-    return text;
-}
-
 bool asks_for_bound(const SceneSettings& settings) {
     const bool has_table = settings.height_test == datapath::HeightTest::rank && settings.formats.bound_bits > 0;
     return has_table || settings.tests.threshold("bound_threshold") != TestSettings{}.threshold("bound_threshold");

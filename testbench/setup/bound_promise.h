@@ -38,7 +38,7 @@ struct BoundCondition {
     const char* where = "";  ///< it matters; empty: everywhere
 };
 
-/// All conditions: remarks, the key's text and testbench/check/PROMISES.md are derived from this table. Besides,
+/// All conditions: remarks and testbench/check/PROMISES.md are derived from this table. Besides,
 /// positions are rounded (formats.position_bits), and the picture is cut at camera.near_plane: a run measures their
 /// effect (testbench/check/surface_error/bound_check.h).
 inline constexpr std::array bound_conditions{
@@ -82,9 +82,6 @@ inline constexpr std::array bound_conditions{
 
 /// The setting, and where it matters.
 std::string as_text(const BoundCondition& condition);
-
-/// For the key's text: all of them, separated by commas.
-std::string bound_condition_settings();
 
 /// Whether the settings ask for a bound: the Rank Table has bounds, or the threshold was set.
 bool asks_for_bound(const SceneSettings& settings);
