@@ -98,48 +98,132 @@ void check_round_trips(const datapath::Formats& formats, int tag_bits, Random& r
     }
 }
 
-/// The fields: name with its components, number of equal ones, and meaning.
+/// A value of an item: its fields' names, widths and meaning.
+struct Row {
+    std::string name, bits, meaning;
+    bool of_each;  ///< vertex or edge, of which the first represents all
+};
+
+/// Collects an item's values.
 struct Table {
-    std::string text, components;
+    std::vector<Row> rows;
+    std::string components;
     datapath::Field last{};
-    int alike = 0;
+    int alike = 0;  ///< fields of the same width that are not in the row yet
 
     std::int64_t field(const datapath::Field& field, std::int64_t value) {
-        const bool same = alike > 0 && std::string(field.name) == last.name && field.index == last.index &&
-                          field.bits == last.bits && field.is_signed == last.is_signed;
-        if (!same)
-            finish();
+        if (field.index > 0)
+            return value;
+        const bool same_value = alike > 0 && std::string(field.name) == last.name && field.index == last.index;
+        if (!same_value || field.bits != last.bits || field.is_signed != last.is_signed)
+            finish_width();
+        if (!same_value) {
+            finish_value();
+            rows.push_back({field.name, "", field.meaning, field.index == 0});
+        }
         last = field;
         ++alike;
         if (*field.component != 0)
-            components += (components.empty() ? " (" : ", ") + std::string(field.component);
+            components += (components.empty() ? "" : ", ") + std::string(field.component);
         return value;
     }
     std::uint32_t annotation(const char*, std::uint32_t value) const { return value; }
 
-    /// The first of three equal vertices or edges represents all.
-    void finish() {
-        if (alike > 0 && last.index <= 0)
-            text += "| " + std::string(last.name) + (components.empty() ? "" : components + ")") +
-                    (last.index < 0 ? "" : " of each") + " | " + (alike > 1 ? std::to_string(alike) + " x " : "") +
-                    std::to_string(last.bits) + (last.is_signed ? " signed" : "") + " | " + last.meaning + " |\n";
+    void finish_width() {
+        if (alike > 0)
+            rows.back().bits += (rows.back().bits.empty() ? "" : ", ") +
+                                (alike > 1 ? std::to_string(alike) + " x " : "") + std::to_string(last.bits) +
+                                (last.is_signed ? " signed" : "");
         alike = 0;
+    }
+    void finish_value() {
+        if (!components.empty())
+            rows.back().name += " (" + components + ")";
         components.clear();
     }
 };
 
-template <class Item>
-std::string table_of() {
-    const datapath::Formats formats;
-    const int tag = tag_bits(Design{});
-    Table table;
-    const Item item{};
-    describe_item(table, item, formats, tag);
-    table.finish();
-    return "### " + std::string(DescriptionOf<Item>::Type::name) + ": " +
-           std::to_string(item_bits<Item>(formats, tag)) +
-           " bits\n\n| field | bits | meaning |\n| --- | --- | --- |\n" + table.text + "\n";
-}
+// Two groups of fields that many items begin with or contain.
+struct TagOfPart {
+    static constexpr const char* name = "tag of a part";
+    PartTag tag;
+
+    template <class Codec, class Any>
+    static constexpr void describe(datapath::Fields<Codec>& fields, Any& item) {
+        describe_tag(fields, item.tag);
+    }
+};
+struct OneVertex {
+    static constexpr const char* name = "vertex";
+    datapath::Vertex vertex;
+
+    template <class Codec, class Any>
+    static constexpr void describe(datapath::Fields<Codec>& fields, Any& item) {
+        describe_vertex(fields, item.vertex);
+    }
+};
+
+/// The page's table of items. An item that contains all fields of one above has the name of that in their place.
+class ItemPage {
+  public:
+    template <class Item>
+    void add() {
+        const datapath::Formats formats;
+        const int tag = tag_bits(Design{});
+        Table table;
+        const Item item{};
+        describe_item(table, item, formats, tag);
+        table.finish_width();
+        table.finish_value();
+        const Shown shown{DescriptionOf<Item>::Type::name, std::to_string(item_bits<Item>(formats, tag)), table.rows};
+        write("**" + shown.name + "**", "**" + shown.bits + "**", "");
+        for (std::size_t at = 0; at < shown.rows.size();) {
+            const Shown* const part = found_in(shown.rows, at);
+            const Row& row = shown.rows[at];
+            const std::string each = row.of_each ? " of each" : "";
+            if (part == nullptr)
+                write(row.name + each, row.bits, row.meaning);
+            else
+                write("*" + part->name + "*" + (part->rows.front().of_each ? "" : each), part->bits, "");
+            at += part == nullptr ? 1 : part->rows.size();
+        }
+        shown_.push_back(shown);
+    }
+    const std::string& text() const { return text_; }
+
+  private:
+    struct Shown {
+        std::string name, bits;
+        std::vector<Row> rows;
+    };
+
+    void write(const std::string& name, const std::string& bits, const std::string& meaning) {
+        text_ += "| " + name + " | " + bits + " | " + meaning + (meaning.empty() ? "|\n" : " |\n");
+    }
+
+    /// The longest of those shown whose rows are those from `at` on; null: none.
+    const Shown* found_in(const std::vector<Row>& rows, std::size_t at) const {
+        const Shown* longest = nullptr;
+        for (const Shown& part : shown_) {
+            const std::size_t size = part.rows.size();
+            if (size < 2 || at + size > rows.size() || (longest != nullptr && size <= longest->rows.size()))
+                continue;
+            bool same = true;
+            for (std::size_t k = 0; k < size; ++k) {
+                const Row &a = part.rows[k], &b = rows[at + k];
+                const bool each_differs = a.of_each != b.of_each;
+                same = same && a.name == b.name && a.bits == b.bits && a.meaning == b.meaning &&
+                       each_differs == (part.rows[0].of_each != rows[at].of_each);
+            }
+            if (same)
+                longest = &part;
+        }
+        return longest;
+    }
+
+    std::vector<Shown> shown_;
+    std::string text_ = "| field | bits | meaning |\n| --- | --- | --- |\n";
+};
 
 }  // namespace
 
@@ -261,8 +345,9 @@ TEST_CASE("a tag distinguishes all triangles between Get Triangle and Pass or Te
 }
 
 TEST_CASE("the streams' README lists every item with its fields") {
-    std::string found;
-    StreamItems::for_each([&](auto type) { found += table_of<typename decltype(type)::Item>(); });
-    found.pop_back();
-    testing::expect_section("modules/sockets/README.md", "## Items\n\n", found, "TESSERA_WRITE_STREAMS");
+    ItemPage page;
+    page.add<TagOfPart>();
+    page.add<OneVertex>();
+    StreamItems::for_each([&](auto type) { page.add<typename decltype(type)::Item>(); });
+    testing::expect_section("modules/sockets/README.md", "## Items\n\n", page.text(), "TESSERA_WRITE_STREAMS");
 }
