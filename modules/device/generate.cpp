@@ -55,6 +55,23 @@ void for_each_word(Each&& each) {
     });
 }
 
+/// The name of the array whose first element the register is: "tests.half_vector"; else the register's.
+std::string array_of(const DeviceRegister& r) {
+    return r.name.substr(0, r.name.find("[0]"));
+}
+
+/// The position after the array that begins at `first`, of registers that differ in nothing else; after a single
+/// register, if it begins none.
+std::size_t after_array(const std::vector<DeviceRegister>& registers, std::size_t first) {
+    const DeviceRegister& r = registers[first];
+    const std::string element = array_of(r) + '[';
+    std::size_t next = first + 1;
+    while (r.name != array_of(r) && next < registers.size() && registers[next].name.rfind(element, 0) == 0 &&
+           registers[next].reset == r.reset)
+        ++next;
+    return next;
+}
+
 /// struct tessera_base_vertex, or of the finished triangle.
 std::string c_record(bool finished) {
     const std::string name = finished ? "finished" : "base";
@@ -187,17 +204,22 @@ std::string registers_page(const std::vector<DeviceRegister>& registers) {
         << "# The device's registers\n\n"
         << made_by
         << "\n\nOffsets are in bytes and the same in every design. Widths and reset values are those of the default\n"
-           "design; for registers that it lacks, those of a design that has them. A register of more than 32 bits has a second word, which follows the lower one. Bits beyond the\n"
-           "width read as 0, in a signed register as copies of the sign bit, and are ignored in writes. `ro`: a write is refused.\n"
+           "design; for registers that it lacks, those of a design that has them; *(with a Rank Test)*: only a design with that test has the\n"
+           "register. A register of more than 32 bits has a second word, which follows the lower one. Bits beyond the width read as 0, in a\n"
+           "signed register as copies of the sign bit, and are ignored in writes. `ro`: a write is refused.\n"
            "`rw`: refused while a frame is under way, unless marked *. `command`: writing 1 executes the command, reads return 0. `w1c`: writing 1\n"
            "clears the bit.\n\n"
            "| offset | register | bits | access | reset | meaning |\n| --- | --- | --- | --- | --- | --- |\n";
-    for (const DeviceRegister& r : registers)
-        text << "| 0x" << hex(r.offset, 3) << " | `" << r.name << "` | " << (r.is_signed ? "signed " : "") << r.bits
-             << " | " << access_name(r.access) << (r.while_busy ? "*" : "") << " | " << (r.reset < 10 ? "" : "0x")
-             << hex(r.reset, 1) << " | " << r.meaning
-             << (r.only_with.empty() ? std::string() : std::string(" (only in a design with a ") + r.only_with + ")")
-             << " |\n";
+    for (std::size_t first = 0, next = 0; first < registers.size(); first = next) {
+        const DeviceRegister& r = registers[first];
+        next = after_array(registers, first);
+        const std::size_t more = next - first - 1;
+        text << "| 0x" << hex(r.offset, 3) << (more == 0 ? "" : " to 0x" + hex(registers[next - 1].offset, 3)) << " | `"
+             << (more == 0 ? r.name : array_of(r) + "[0.." + std::to_string(more) + "]") << "` | "
+             << (r.is_signed ? "signed " : "") << r.bits << " | " << access_name(r.access) << (r.while_busy ? "*" : "")
+             << " | " << (r.reset < 10 ? "" : "0x") << hex(r.reset, 1) << " | " << r.meaning
+             << (r.only_with.empty() ? std::string() : std::string(" (with a ") + r.only_with + ")") << " |\n";
+    }
     text << "\n## Bits\n\n| register | bit | name | meaning |\n| --- | --- | --- | --- |\n";
     for (const RegisterBit& bit : register_bits())
         text << "| `" << bit.register_name << "` | " << bit.bit << " | `" << bit.name << "` | " << bit.meaning
