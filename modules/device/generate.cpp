@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cctype>
 #include <iomanip>
+#include <iterator>
 #include <sstream>
+#include <tuple>
 #include <utility>
 
 #include "modules/datapath/height_tests.h"
@@ -55,21 +57,32 @@ void for_each_word(Each&& each) {
     });
 }
 
-/// The name of the array whose first element the register is: "tests.half_vector"; else the register's.
-std::string array_of(const DeviceRegister& r) {
-    return r.name.substr(0, r.name.find("[0]"));
+/// Whether the register follows the other at once and differs from it in nothing but its name.
+bool continues(const DeviceRegister& before, const DeviceRegister& r) {
+    const auto facts = [](const DeviceRegister& it) {
+        return std::tie(it.bits, it.words, it.is_signed, it.reset, it.access, it.while_busy, it.only_with, it.meaning);
+    };
+    return r.offset == before.offset + 4 * static_cast<std::uint32_t>(r.words) && facts(r) == facts(before);
 }
 
-/// The position after the array that begins at `first`, of registers that differ in nothing else; after a single
-/// register, if it begins none.
-std::size_t after_array(const std::vector<DeviceRegister>& registers, std::size_t first) {
-    const DeviceRegister& r = registers[first];
-    const std::string element = array_of(r) + '[';
-    std::size_t next = first + 1;
-    while (r.name != array_of(r) && next < registers.size() && registers[next].name.rfind(element, 0) == 0 &&
-           registers[next].reset == r.reset)
-        ++next;
-    return next;
+/// "`map.width`, `map.height`"; an array as "`tests.half_vector[0..2]`".
+std::string names_of(const std::vector<DeviceRegister>& registers) {
+    std::string text;
+    for (const DeviceRegister& r : registers) {
+        const std::size_t bracket = r.name.find('[');
+        if (bracket != std::string::npos && r.name[bracket + 1] != '0')
+            continue;
+        text += (text.empty() ? "`" : ", `") + r.name.substr(0, bracket);
+        if (bracket != std::string::npos) {
+            const std::string array = r.name.substr(0, bracket + 1);
+            const auto elements = std::count_if(registers.begin(), registers.end(), [&](const DeviceRegister& it) {
+                return it.name.rfind(array, 0) == 0;
+            });
+            text += "[0.." + std::to_string(elements - 1) + ']';
+        }
+        text += '`';
+    }
+    return text;
 }
 
 /// struct tessera_base_vertex, or of the finished triangle.
@@ -208,16 +221,16 @@ std::string registers_page(const std::vector<DeviceRegister>& registers) {
            "register. A register of more than 32 bits has a second word, which follows the lower one. Bits beyond the width read as 0, in a\n"
            "signed register as copies of the sign bit, and are ignored in writes. `ro`: a write is refused.\n"
            "`rw`: refused while a frame is under way, unless marked *. `command`: writing 1 executes the command, reads return 0. `w1c`: writing 1\n"
-           "clears the bit.\n\n"
+           "clears the bit. Registers in one row follow one another.\n\n"
            "| offset | register | bits | access | reset | meaning |\n| --- | --- | --- | --- | --- | --- |\n";
-    for (std::size_t first = 0, next = 0; first < registers.size(); first = next) {
-        const DeviceRegister& r = registers[first];
-        next = after_array(registers, first);
-        const std::size_t more = next - first - 1;
-        text << "| 0x" << hex(r.offset, 3) << (more == 0 ? "" : " to 0x" + hex(registers[next - 1].offset, 3)) << " | `"
-             << (more == 0 ? r.name : array_of(r) + "[0.." + std::to_string(more) + "]") << "` | "
-             << (r.is_signed ? "signed " : "") << r.bits << " | " << access_name(r.access) << (r.while_busy ? "*" : "")
-             << " | " << (r.reset < 10 ? "" : "0x") << hex(r.reset, 1) << " | " << r.meaning
+    for (auto first = registers.begin(), next = first; first != registers.end(); first = next) {
+        for (++next; next != registers.end() && continues(*std::prev(next), *next);)
+            ++next;
+        const DeviceRegister &r = *first, &last = *std::prev(next);
+        text << "| 0x" << hex(r.offset, 3) << (r.offset == last.offset ? "" : " to 0x" + hex(last.offset, 3)) << " | "
+             << names_of({first, next}) << " | " << (r.is_signed ? "signed " : "") << r.bits << " | "
+             << access_name(r.access) << (r.while_busy ? "*" : "") << " | " << (r.reset < 10 ? "" : "0x")
+             << hex(r.reset, 1) << " | " << r.meaning
              << (r.only_with.empty() ? std::string() : std::string(" (with a ") + r.only_with + ")") << " |\n";
     }
     text << "\n## Bits\n\n| register | bit | name | meaning |\n| --- | --- | --- | --- |\n";
