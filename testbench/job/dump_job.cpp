@@ -32,15 +32,22 @@ Job moved_to(const std::filesystem::path& folder, const Job& job) {
     return moved;
 }
 
-std::string head_of(const KeyTable& table) {
-    return fmt::format(
-        "### {}\n\n{}\n\n| key | default | range | unit | meaning |\n| --- | --- | --- | --- | --- |\n",
-        table.name.empty() ? "Top level" : '`' + table.name + '`', table.description);
+std::string head_of(const KeyTable& table, const std::vector<std::string>& columns) {
+    std::string text = fmt::format("### {}\n\n{}\n\n", table.name.empty() ? "Top level" : '`' + table.name + '`',
+                                   table.description);
+    std::string rule = "|";
+    text += '|';
+    for (const std::string& column : columns) {
+        text += ' ' + column + " |";
+        rule += " --- |";
+    }
+    return text + '\n' + rule + '\n';
 }
 
-/// The columns of a key after its name.
+/// The columns of a key in the summary, after its name.
 std::string facts_of(const Key& key, const std::string& meaning) {
-    return fmt::format("| `{}` | {} | {} | {} |\n", toml_value(default_of(key)), range_text(key), key.unit, meaning);
+    return fmt::format("| `{}` | {}{} | {} |\n", toml_value(default_of(key)), range_text(key),
+                       key.unit == "-" ? "" : " (" + key.unit + ")", meaning);
 }
 
 /// Keys that differ only in the unit or memory that they begin with.
@@ -111,9 +118,11 @@ std::string dump_short_job(const Job& job, const std::filesystem::path& folder, 
 std::string document_keys() {
     std::string out;
     for (const KeyTable& table : job_tables()) {
-        out += (out.empty() ? "" : "\n") + head_of(table);
-        for (const Key& key : table.keys)
-            out += fmt::format("| `{}` {}", key.name, facts_of(key, key.description));
+        out += (out.empty() ? "" : "\n") + head_of(table, {"key", "default", "range", "unit", "meaning"});
+        for (const Key& key : table.keys) {
+            out += fmt::format("| `{}` | `{}` | {} | {} | {} |\n", key.name, toml_value(default_of(key)),
+                               range_text(key), key.unit, key.description);
+        }
     }
     return out;
 }
@@ -121,7 +130,7 @@ std::string document_keys() {
 std::string summarise_keys() {
     std::string out;
     for (const KeyTable& table : job_tables()) {
-        out += (out.empty() ? "" : "\n") + head_of(table);
+        out += (out.empty() ? "" : "\n") + head_of(table, {"key", "default", "range (unit)", "meaning"});
         std::vector<KeyRow> rows;
         for (const Key& key : table.keys) {
             KeyRow row = row_of(key);

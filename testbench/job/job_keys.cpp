@@ -216,7 +216,7 @@ std::vector<KeyTable> declare_keys() {
         key.add("file", &Mesh::file, KeyKind::file, "With mesh.source = \"file\" an OBJ file; with \"patches\" a file of bicubic Bezier patches in the format of Newell's teapot; with \"run\" the folder of an earlier run");
         key.add("fingerprint", &Mesh::fingerprint, KeyKind::text, "64-bit FNV-1a hash of the file (of a run's mesh.ply), 16 hexadecimal digits; a file with another hash is refused. A run writes it into its job.toml; empty: any file");
         key.add("columns", &Mesh::columns, "quads", between(0, 2048), "Quads along u of a plane, cylinder or sphere, or of each patch; 0: 3 for the plane, 4 for each patch, 32 for cylinder and sphere, which need 3 or more");
-        key.add("rows", &Mesh::rows, "quads", between(0, 2048), "Quads along v, likewise; 0: 3 for the plane, 4 for each patch, 32 for cylinder and sphere; a sphere needs 2 or more");
+        key.add("rows", &Mesh::rows, "quads", between(0, 2048), "Quads along v, likewise; a sphere needs 2 or more");
         key.add("spacing", &Mesh::spacing, "texels", between(1, 2048), "Distance between the vertices of a lattice: a power of two");
         key.add("width", &Mesh::width, "model units", length_range, "Size of the plane along x; with a lattice, of the map");
         key.add("depth", &Mesh::depth, "model units", length_range, "Size of the plane along y; with a lattice, of the map");
@@ -227,7 +227,7 @@ std::vector<KeyTable> declare_keys() {
         using Map = Job::Map;
         key.add("source", &Map::source, "A built-in map; file: the image in map.file (the default if map.file is given)");
         key.add("file", &Map::file, KeyKind::file, "EXR, PNG or PGM file, with map.source = \"file\"");
-        key.add("fingerprint", &Map::fingerprint, KeyKind::text, "64-bit FNV-1a hash of the file, 16 hexadecimal digits; a file with another hash is refused. A run writes it into its job.toml; empty: any file");
+        key.add("fingerprint", &Map::fingerprint, KeyKind::text, "Hash of the file, as mesh.fingerprint");
         key.add("channel", &Map::channel, KeyKind::text, "Channel of an EXR file; empty: Y, else R, else the only one");
         key.add("width", &Map::width, "texels", between(1, 4096), "Width of a built-in map");
         key.add("height", &Map::height, "texels", between(1, 4096), "Height of a built-in map");
@@ -236,7 +236,7 @@ std::vector<KeyTable> declare_keys() {
         key.add("text", &Map::text, KeyKind::text, "Text of the text map");
         key.add("range", &Map::range, "the map's own units", coordinate_range, "The range of map values that displacement.scale spans: full, all values that the source can represent (PGM: 0 to its maximum value; PNG: 0 to 255 or 65535; EXR and built-in maps: 0 to 1); data, from the lowest to the highest value that occurs; or [low, high]. Values outside the range extrapolate linearly. With data or [low, high] the displacement codes, and the full scale of tests.summed_height_threshold, span the values that occur");
         key.add("no_data", &Map::no_data, "the map's own units", "Values that mark missing data, such as -9999: their texels, like those that are NaN, get the lowest of the other values, and are counted. A value matches if it is the nearest of the file's type; one beyond 1e30, positive or negative, also if it differs by at most 1 %");
-        key.add("heights", &Map::heights, "Contents of the displacement map: the map's heights, or fitted heights. To fit them the host finds the mesh that the job's thresholds give, and chooses the heights of its vertices that reduce its squared error at the texel centres most, within those of the texels up to two away, and without a larger distance between mesh and map than before. The tables of the tests remain those of the map, and errors are measured against the map");
+        key.add("heights", &Map::heights, "Contents of the displacement map: the map's heights, or heights fitted to the mesh that the job's thresholds give. They reduce its squared error at the texel centres most, lie within those of the texels up to two away, and do not enlarge the largest distance between mesh and map. The tables of the tests remain those of the map; errors are measured against it");
         key.add("address_u", &Map::address_u, "Addressing beyond the map's left and right border; repeat closes a cylinder's seam");
         key.add("address_v", &Map::address_v, "Addressing beyond the map's lower and upper border");
     });
