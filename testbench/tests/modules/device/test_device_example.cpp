@@ -1,4 +1,8 @@
 #include "modules/device/driver/example.h"
+
+#include <regex>
+#include <string>
+
 #include "testbench/tests/modules/device/bench.h"
 #include "testbench/tests/support/source_folder.h"
 #include "testbench/tests/support/test_folder.h"
@@ -8,7 +12,7 @@
 using namespace tessera;
 using namespace tessera::testing;
 
-TEST_CASE("the example draws three frames, and is the code in the README") {
+TEST_CASE("the example draws three frames, and the README names its functions") {
     const MachineSetup setup = setup_of(small_job(true));
     std::vector<MachineSetup> setups(3, setup);
     std::vector<std::unique_ptr<Reference>> references;
@@ -41,9 +45,16 @@ TEST_CASE("the example draws three frames, and is the code in the README") {
         expect_same(found[k], references[k]->keys);
     CHECK(found[0] != found[1]);
 
-    const std::filesystem::path folder = source_folder() / "modules/device";
-    const std::string example = read_all(folder / "driver/example.c");
-    const std::size_t begin = example.find("/* Three frames");
-    REQUIRE(begin != std::string::npos);
-    CHECK_THAT(read_all(folder / "README.md"), Catch::Contains("```c\n" + example.substr(begin) + "```\n"));
+    const std::string page = read_all(source_folder() / "modules/device/README.md");
+    const std::string example = read_all(source_folder() / "modules/device/driver/example.c");
+    const std::regex name("`(tessera_[a-z_]+)`");
+    unsigned functions = 0;
+    for (std::sregex_iterator it(page.begin(), page.end(), name), end; it != end; ++it) {
+        const std::string function = (*it)[1];
+        if (function == "tessera_benchmark")
+            continue;
+        ++functions;
+        CHECK_THAT(example, Catch::Contains(function + "("));
+    }
+    CHECK(functions == 10);
 }
