@@ -257,7 +257,8 @@ std::string table(Mode mode, const std::vector<Place>& places, std::vector<Kind>
     for (const Place& place : places) {
         if (mode == Mode::functional && std::string(place.name) == "triangle_queue.off_chip_memory")
             continue;
-        text += "| " + std::string(place.name) + " |";
+        const std::string unit = "tessellation_tests_0.", name = place.name;
+        text += "| " + name.substr(name.rfind(unit, 0) == 0 ? unit.size() : 0) + " |";
         for (const Kind& kind : kinds) {
             const bool held_back = strikes_held_back(kind.kind);
             const bool first = held_back || (kind.kind == FaultKind::reordered && place.has_two);
