@@ -60,19 +60,21 @@ struct KeyRow {
 
 KeyRow row_of(const Key& key) {
     KeyRow row{&key, {}, {}, {}};
-    const std::string table = "timing.";
+    const std::string leaf(key.leaf());
     const auto look_among = [&](const auto& specs) {
         for (const auto& spec : specs) {
             const std::string owner = spec.name;
-            if (key.name.rfind(table + owner + '_', 0) != 0)
+            if (leaf.rfind(owner + '_', 0) != 0)
                 continue;
-            row.kind = table + '*' + key.name.substr(table.size() + owner.size());
+            row.kind = '*' + leaf.substr(owner.size());
             row.facts = facts_of(key, key.description.substr(key.description.find(": ") + 2));
             row.owners = {owner};
         }
     };
-    look_among(all_units);
-    look_among(all_table_memories);
+    if (key.name.rfind("timing.", 0) == 0) {
+        look_among(all_units);
+        look_among(all_table_memories);
+    }
     return row;
 }
 
@@ -146,7 +148,7 @@ std::string summarise_keys() {
             if (row.owners.size() > 1)
                 out += fmt::format("| `{}`: `{}` {}", row.kind, fmt::join(row.owners, "`, `"), row.facts);
             else
-                out += fmt::format("| `{}` {}", row.key->name, facts_of(*row.key, row.key->description));
+                out += fmt::format("| `{}` {}", row.key->leaf(), facts_of(*row.key, row.key->description));
         }
     }
     return out;

@@ -24,7 +24,7 @@ std::string dump_short_job(const Job& job, const std::filesystem::path& folder, 
 /// The reference of all job keys: one Markdown table per table of a job file.
 std::string document_keys();
 
-/// The same with one row for keys that differ only in the unit or memory they belong to.
+/// The same with one row for keys that differ only in the unit or memory they belong to, and names without their table.
 std::string summarise_keys();
 
 }  // namespace tessera
