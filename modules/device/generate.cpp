@@ -85,6 +85,13 @@ std::string names_of(const std::vector<DeviceRegister>& registers) {
     return text;
 }
 
+/// A row of the page's table of records.
+struct RecordRow {
+    bool finished, is_signed;
+    int first, last;  ///< words
+    std::string names, meaning;
+};
+
 /// struct tessera_base_vertex, or of the finished triangle.
 std::string c_record(bool finished) {
     const std::string name = finished ? "finished" : "base";
@@ -245,14 +252,19 @@ std::string registers_page(const std::vector<DeviceRegister>& registers) {
     text << "\n## Records\n\nLittle-endian words, three vertices one after another: " << base_triangle_bytes
          << " bytes per base triangle, " << finished_triangle_bytes << " per\nfinished one, in all formats.\n\n"
          << "| record | word | name | meaning |\n| --- | --- | --- | --- |\n";
-    int word = 0;
-    bool before = false;
+    std::vector<RecordRow> rows;  // words without a meaning of their own are in the row of the one before
     for_each_word([&](bool finished, const char* name, bool is_signed, const char* meaning) {
-        word = finished != before ? 0 : word;
-        before = finished;
-        text << "| " << (finished ? "finished" : "base") << " | " << word++ << " | `" << name << "`"
-             << (is_signed ? ", signed" : "") << " | " << meaning << " |\n";
+        const bool starts = rows.empty() || rows.back().finished != finished;
+        const int word = starts ? 0 : rows.back().last + 1;
+        if (starts || *meaning != 0 || rows.back().is_signed != is_signed)
+            rows.push_back({finished, is_signed, word, word, "", meaning});
+        rows.back().last = word;
+        rows.back().names += (rows.back().names.empty() ? "`" : ", `") + std::string(name) + "`";
     });
+    for (const RecordRow& row : rows)
+        text << "| " << (row.finished ? "finished" : "base") << " | " << row.first
+             << (row.first == row.last ? "" : " to " + std::to_string(row.last)) << " | " << row.names
+             << (row.is_signed ? ", signed" : "") << " | " << row.meaning << " |\n";
     return text.str();
 }
 
