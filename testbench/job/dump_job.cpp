@@ -144,11 +144,15 @@ std::string summarise_keys() {
             else
                 same->owners.push_back(row.owners.front());
         }
+        std::vector<std::string> before;
         for (const KeyRow& row : rows) {
-            if (row.owners.size() > 1)
-                out += fmt::format("| `{}`: `{}` {}", row.kind, fmt::join(row.owners, "`, `"), row.facts);
-            else
+            if (row.owners.size() < 2)
                 out += fmt::format("| `{}` {}", row.key->leaf(), facts_of(*row.key, row.key->description));
+            else if (row.owners == before)
+                out += fmt::format("| `{}`: likewise {}", row.kind, row.facts);
+            else
+                out += fmt::format("| `{}`: `{}` {}", row.kind, fmt::join(row.owners, "`, `"), row.facts);
+            before = row.owners;
         }
     }
     return out;

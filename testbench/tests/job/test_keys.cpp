@@ -463,14 +463,17 @@ TEST_CASE("the key reference names every key, and testbench/job/README.md ends w
         INFO(key.name);
         CHECK_THAT(text, Contains("| `" + key.name + "` |") && Contains("| " + key.description + " |\n"));
     }
-    std::size_t own_rows = 0, shared = 0;
+    std::size_t own_rows = 0, shared = 0, owners = 0;
     std::istringstream lines(page);
     for (std::string line; std::getline(lines, line);) {
         const std::string names = line.substr(0, line.find(" | ", 1));
-        if (names.rfind("| `*_", 0) == 0)
-            shared += static_cast<std::size_t>(std::count(names.begin(), names.end(), '`')) / 2 - 1;
-        else if (names.rfind("| `", 0) == 0)
+        if (names.rfind("| `*_", 0) == 0) {
+            if (names.find(": likewise") == std::string::npos)
+                owners = static_cast<std::size_t>(std::count(names.begin(), names.end(), '`')) / 2 - 1;
+            shared += owners;
+        } else if (names.rfind("| `", 0) == 0) {
             ++own_rows;
+        }
     }
     CHECK(own_rows + shared == all_keys().size());
     CHECK(shared > 60);
