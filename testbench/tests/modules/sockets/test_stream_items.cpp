@@ -176,7 +176,7 @@ class ItemPage {
         table.finish_width();
         table.finish_value();
         const Shown shown{DescriptionOf<Item>::Type::name, std::to_string(item_bits<Item>(formats, tag)), table.rows};
-        write("**" + shown.name + "**", "**" + shown.bits + "**", "");
+        write("**" + shown.name + "**", shown.bits, "");
         for (std::size_t at = 0; at < shown.rows.size();) {
             const Shown* const part = found_in(shown.rows, at);
             const Row& row = shown.rows[at];
