@@ -57,7 +57,7 @@ if(TESSERA_FUZZ)
   target_link_options(tessera_options INTERFACE ${fuzz})
 endif()
 
-# golden and testbench, which are not installed, use SSE4.1 if this machine has it: floor() is one instruction, which
+# golden and testbench, no libraries for others, use SSE4.1 if this machine has it: floor() is one instruction, which
 # saves 6 % of a run with all checks. -DTESSERA_HOST_HAS_SSE41=OFF turns it off.
 if(NOT CMAKE_CROSSCOMPILING)
   include(CheckCXXSourceRuns)

@@ -43,20 +43,21 @@ class HeightTestFunctions {
     /// The register of a threshold, one of TestParameters::height_thresholds.
     struct Threshold {
         const char* name = nullptr;  ///< "rank_threshold": register and job key tests.rank_threshold
-        int bits = 0;                ///< 0: designs of these formats lack the register
+        int bits = 0;                ///< at most 63; 0: designs of these formats lack the register
         bool is_signed = false;
-        const char* meaning = nullptr;
+        const char* meaning = "";
     };
 
     virtual ~HeightTestFunctions() = default;
 
-    const char* name;       ///< value of the key hardware.height_test: "mipmap" for the Mipmap Test and its table
+    const char* name;       ///< "mipmap" for the Mipmap Test and its table; value of the key hardware.height_test
     const char* work = "";  ///< what it does with an edge, for the table of units in modules/README.md
     const char* arithmetic = "";
     unsigned latency = 1;      ///< cycles, after the last entry
-    int feature = -1;          ///< its bit of the device's register `features`; -1: none
-    bool rectangles = false;   ///< a request reads the corners of a rectangle; otherwise one entry
-    unsigned requests;         ///< of an edge to the test's table, unless it reads codes or nothing
+    int feature = -1;          ///< its bit of the device's register `features`, of which 13 to 15 are free; -1: none
+    bool rectangles = false;   ///< a request reads the corners of a rectangle, at most nine entries, from a
+                               ///< memory with the timing of the Summed Height Table; otherwise one entry
+    unsigned requests;         ///< exactly, at most 3, of an edge to the test's table, unless it reads codes or nothing
     unsigned codes = 0;        ///< entries of the displacement map that a short edge may read instead
     bool second_side = false;  ///< also codes of vertices not yet displaced: an on-chip map has a second side for it
     bool covers_more = false;  ///< its table may cover more texels than the map (CoveredTexels)
@@ -68,9 +69,8 @@ class HeightTestFunctions {
     std::string unit() const { return std::string(name) + "_test"; }
     std::string table() const { return std::string(name) + "_table"; }
     std::string title() const { return capitalised(unit()); }
-    std::string table_title() const { return capitalised(table()); }
 
-    /// Bits of an entry of the test's table.
+    /// Bits of an entry of the test's table, at most 64.
     virtual int entry_bits(const Formats& formats) const = 0;
     /// Columns and rows of the table, which follow from the other registers.
     virtual void shape(const Registers& registers, TableLayout& table) const = 0;

@@ -32,7 +32,7 @@ inline const std::vector<const HeightTestFunctions*>& height_tests() {
 inline HeightTest add_height_test(const HeightTestFunctions& test) {
     for (const HeightTestFunctions* const other : height_tests())
         if (std::string_view(other->name) == test.name)
-            throw std::invalid_argument("there is a height test " + std::string(test.name));
+            throw std::invalid_argument("there is another height test " + std::string(test.name));
     list_of_height_tests().push_back(&test);
     return static_cast<HeightTest>(height_tests().size() - 1);
 }

@@ -43,7 +43,7 @@ constexpr MipmapBlocks mipmap_blocks(int level, const MapGeometry& map) {
 /// The level of a single block, the table's last.
 constexpr int highest_mipmap_level(const MapGeometry& map) {
     int level = 0;
-    while ((std::max(map.width, map.height) - 1) >> level != 0)
+    while (std::max(map.width, map.height) > std::uint32_t{1} << level)
         ++level;
     return level;
 }

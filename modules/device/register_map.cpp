@@ -1,6 +1,7 @@
 #include "modules/device/register_map.h"
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "modules/datapath/height_tests.h"
 #include "modules/datapath/map_entry.h"
@@ -95,6 +96,7 @@ datapath::Registers widest() {
     f.normal = Format::make_signed(FormatLimits::normal_bits.most, FormatLimits::normal_fraction.most);
     f.position = Format::make_signed(FormatLimits::position_bits.most, 0);
     f.screen = Format::make_signed(FormatLimits::screen_bits.most, 0);
+    f.summed_height = Format::make_unsigned(FormatLimits::summed_height_bits.most, 0);
     f.rank_bits = FormatLimits::rank_bits.most;
     f.bound_bits = FormatLimits::bound_bits.most;
     return registers;
@@ -180,8 +182,10 @@ std::vector<DeviceRegister> register_map(const datapath::Registers& reset, const
     datapath::visit_registers(reset, [&](const datapath::Register& field, const auto& values) {
         const std::string name = field.name;
         const bool base = name.find(".base") != std::string::npos;
-        while (place->register_name != name)
+        while (place != places.end() && place->register_name != name)
             ++place;
+        if (place == places.end())
+            throw std::logic_error("the device has no place for the register " + name);
         for (const std::int64_t value : values) {
             const std::uint64_t mask = field.bits == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << field.bits) - 1;
             map.push_back({place->name, place->offset, field.bits, place->words,

@@ -53,8 +53,7 @@ inline constexpr std::array<UnitSpec, 15> all_units = {{
     {"calculate_new_u", "Calculate New U", "t_ij", "add, shift", &Timing::calculate_new_u, Per::lane},
     {"tex_coord_test", "Tex Coord Test", "compares integer parts; includes the Generation Test", "compare",
      &Timing::tex_coord_test, Per::lane},
-    {height_test_unit, "Height test", "the Summed Height Test, or the test in its place", "", &Timing::height_test,
-     Per::tests_unit, true},
+    {height_test_unit, "Height test", "", "", &Timing::height_test, Per::tests_unit, true},
     {"normal_test",
      "Normal Test",
      "N_ij, T_ij, N'_ij, six differences; includes the Highlight Test",
@@ -108,7 +107,7 @@ inline constexpr std::array<MemorySpec, 4> all_table_memories = {{
     {"displacement_map", "Displacement map", &Timing::displacement_map},
     {"normal_map", "Normal map", &Timing::normal_map},
     {"summed_height_table", "Summed Height Table", &Timing::summed_height_table, true},
-    {"height_table", "Table of another height test", &Timing::height_table},
+    {"height_table", "Table of any other height test", &Timing::height_table},
 }};
 
 /// The entry of a list with this name; in a constant expression, an error if there is none.

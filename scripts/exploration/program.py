@@ -16,6 +16,9 @@ FOLDER = "{folder}"  # in a command's arguments: the folder for its files
 # other working directories.
 DATA = Path(os.environ.get("TESSERA_DATA", Path(__file__).resolve().parents[2] / "../shared/data")).resolve()
 os.environ["TESSERA_DATA"] = str(DATA)
+# Libraries of height tests, part of the program.
+HEIGHT_TESTS = [Path(name).resolve() for name in os.environ.get("TESSERA_HEIGHT_TESTS", "").split(":") if name]
+os.environ["TESSERA_HEIGHT_TESTS"] = ":".join(map(str, HEIGHT_TESTS))
 
 # Commands with one result. Each starts if the previous one ended with exit code 0. `kept`: their files stay in the store.
 # `inputs`: {path: stamp} of the files they read, as they were when the key was made.
@@ -91,7 +94,7 @@ class ContentHash:
     def __init__(self, program):
         self.program = Path(program)
         self.stamps, self.files = {}, {}
-        self.version = self.file(self.program)
+        self.version = "".join(self.file(path) for path in (self.program, *HEIGHT_TESTS))
 
     def seen(self, path):
         """The file's stamp at its first use."""
@@ -110,7 +113,7 @@ class ContentHash:
 
     def inputs_of_job(self, job):
         """Stamps of the program and of a job's file, to be taken before the program reads it; job: None for the default."""
-        return {str(path): self.seen(path) for path in (self.program, job) if path}
+        return {str(path): self.seen(path) for path in (self.program, *HEIGHT_TESTS, job) if path}
 
     def inputs(self, keys, folder):
         """Stamps of the files that a job names."""

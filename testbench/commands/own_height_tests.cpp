@@ -4,18 +4,23 @@
 #include <fmt/format.h>
 
 #include <cstdlib>
+#include <regex>
+#include <set>
 #include <sstream>
 #include <stdexcept>
 #include <string>
 
 #include "modules/datapath/height_tests.h"
 #include "testbench/common/error.h"
+#include "testbench/job/job_keys.h"
 
 namespace tessera {
 
 namespace {
 
 constexpr const char* variable = "TESSERA_HEIGHT_TESTS";
+/// Of other tests, and of what splits a triangle.
+const std::set<std::string> taken_words{"base", "both", "generation", "highlight", "normal", "tex_coord", "view"};
 
 void load(const std::string& file) {
     const auto refuse = [&](const std::string& why) {
@@ -32,12 +37,17 @@ void load(const std::string& file) {
     const OwnHeightTest& test = *find();
     if (test.version != std::string(version))
         refuse(fmt::format("it was built with tessera {}, this is {}: build it again", test.version, version));
+    const std::string name = test.functions->name;
+    if (!std::regex_match(name, std::regex("[a-z][a-z0-9_]*")) || taken_words.count(name) > 0)
+        refuse(fmt::format(
+            "its height test is called \"{}\": choose a name of lower-case letters, digits and _, other than {}", name,
+            fmt::join(taken_words, ", ")));
     try {
         datapath::add_height_test(*test.functions);
         add_height_test_host(*test.host);
         add_height_test_check(*test.check);
     } catch (const std::invalid_argument& taken) {
-        refuse(fmt::format("{}: give its own another name", taken.what()));
+        refuse(fmt::format("{}: rename the library's", taken.what()));
     }
 }
 
@@ -49,6 +59,12 @@ void load_own_height_tests() {
     for (std::string file; std::getline(list, file, ':');)
         if (!file.empty())
             load(file);
+    std::set<std::string> keys;
+    for (const KeyTable& table : job_tables())
+        for (const Key& key : table.keys)
+            if (!keys.insert(key.name).second)
+                throw InputError(
+                    fmt::format("{}: {}: there is another key {}: rename the library's", variable, files, key.name));
 }
 
 }  // namespace tessera

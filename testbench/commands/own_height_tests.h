@@ -21,9 +21,9 @@ void load_own_height_tests();
 }  // namespace tessera
 
 /// Defines the function by which the program finds the library's test, from its three parts.
-#define TESSERA_HEIGHT_TEST(functions, host, check)                                                  \
-    extern "C" const tessera::OwnHeightTest* tessera_height_test();                                  \
-    extern "C" const tessera::OwnHeightTest* tessera_height_test() {                                 \
-        static const tessera::OwnHeightTest test{tessera::version, &(functions), &(host), &(check)}; \
-        return &test;                                                                                \
+#define TESSERA_HEIGHT_TEST(functions, host, check)                                                        \
+    extern "C" __attribute__((visibility("default"))) const tessera::OwnHeightTest* tessera_height_test(); \
+    extern "C" const tessera::OwnHeightTest* tessera_height_test() {                                       \
+        static const tessera::OwnHeightTest test{tessera::version, &(functions), &(host), &(check)};       \
+        return &test;                                                                                      \
     }

@@ -124,6 +124,11 @@ Searched choose_tests(const TuneOrder& order, TuneRequest& request) {
         hardware.triangulation = Job::Hardware{}.triangulation;
     }
     hardware.height_test = of_heights.value_or(hardware.height_test);
+    if (tests.summed_height && host_of(hardware.height_test).searched() == nullptr)
+        throw InputError(
+            fmt::format("hardware.height_test = \"{}\" has no threshold to search: name others with --tests, "
+                        "such as --tests {}",
+                        name_of(hardware.height_test), searched_height_tests().front()));
     request.space = order.vary;
     request.space.normal = by_job ? tests.normal : listed("normal");
     request.space.summed_height = by_job ? tests.summed_height : of_heights.has_value();

@@ -71,31 +71,30 @@ class BareEdges {
 
     /// Evaluates every test of edge k, whose vertex is known, and sets its bit of pass.split if they ask for a split.
     void decide(datapath::TrianglePass& pass, int k) const {
-        using namespace datapath;  // this function consists of calls to the datapath
-        const Vertex &i = pass.edge_begin(k), &j = pass.edge_end(k);
-        const TestParameters& on = r().tests;
-        EdgeTests& edge = pass.edges[static_cast<std::size_t>(k)];
+        const datapath::Vertex &i = pass.edge_begin(k), &j = pass.edge_end(k);
+        const datapath::TestParameters& on = r().tests;
+        datapath::EdgeTests& edge = pass.edges[static_cast<std::size_t>(k)];
         unsigned tests = 0;
         if (on.normal_test && normal_test(i.displaced_normal, j.displaced_normal, edge.displaced_normal, on))
-            tests |= normal_bit;
+            tests |= datapath::normal_bit;
         edge.rank = 0;
         if (on.summed_height_test) {
-            const HeightDecision decision = test_heights(height_edge(i, j, edge.texture));
+            const datapath::HeightDecision decision = test_heights(height_edge(i, j, edge.texture));
             edge.rank = decision.rank;
             if (decision.asks)
-                tests |= summed_height_bit;
+                tests |= datapath::summed_height_bit;
         }
         if (!on.view_test || view_test(i.screen, j.screen, on))
-            tests |= view_bit;
+            tests |= datapath::view_bit;
         if (!on.tex_coord_test || tex_coord_test(i.texture, j.texture, edge.texture, formats()))
-            tests |= tex_coord_bit;
+            tests |= datapath::tex_coord_bit;
         if (!on.generation_test || generation_test(i.generation, j.generation, on))
-            tests |= generation_bit;
+            tests |= datapath::generation_bit;
         edge.tests = static_cast<std::uint8_t>(tests);
         if (on.highlight_test)
             test_for_highlight(i, j, edge, on);
-        edge.evaluated = all_tests;
-        if (split_decision(edge.tests))
+        edge.evaluated = datapath::all_tests;
+        if (datapath::split_decision(edge.tests))
             pass.split = static_cast<std::uint8_t>(pass.split | 1u << k);
     }
 

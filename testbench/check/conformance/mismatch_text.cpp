@@ -104,19 +104,22 @@ std::string registers_text(const datapath::Registers& registers) {
     const auto row = [](const std::array<std::int64_t, 4>& r) {
         return fmt::format("({} {} {} {})", r[0], r[1], r[2], r[3]);
     };
+    std::string thresholds;
+    const auto declared = datapath::functions_of(f.height_test).thresholds(f);
+    for (std::size_t k = 0; k < declared.size(); ++k)
+        if (declared[k].bits > 0)
+            thresholds += fmt::format("{} {} ({}), ", declared[k].name, t.height_thresholds[k], declared[k].meaning);
     const auto mode = [](datapath::AddressMode a) { return a == datapath::AddressMode::repeat ? "repeat" : "clamp"; };
     return fmt::format(
-        "  registers: scale {}, bias {}; normal threshold {}, height test's thresholds {}, {} ({}), view "
-        "threshold {}, "
+        "  registers: scale {}, bias {}; normal threshold {}, {}view threshold {}, "
         "generation limit {}; {}row_x {}, row_y {}, row_w {}, exponent {}, near plane {}; triangulation {}\n"
         "  map: {} x {}, {} in u, {} in v\n"
         "  formats (bits.fraction): position {}.{}, normal {}.{}, texture {}.{}, displacement {}, summed "
         "height {}, "
         "screen {}.{}\n",
-        registers.displacement.scale, registers.displacement.bias, t.normal_threshold, t.height_thresholds[0],
-        t.height_thresholds[1], t.summed_height_unit == datapath::SummedHeightUnit::area ? "area" : "sum, times 4",
-        t.view_threshold, t.generation_limit, highlight, row(m.row_x), row(m.row_y), row(m.row_w), m.exponent,
-        m.near_plane, static_cast<int>(registers.triangulation), registers.map.width, registers.map.height,
+        registers.displacement.scale, registers.displacement.bias, t.normal_threshold, thresholds, t.view_threshold,
+        t.generation_limit, highlight, row(m.row_x), row(m.row_y), row(m.row_w), m.exponent, m.near_plane,
+        static_cast<int>(registers.triangulation), registers.map.width, registers.map.height,
         mode(registers.map.address_u), mode(registers.map.address_v), f.position.bits, f.position.fraction,
         f.normal.bits, f.normal.fraction, f.texture.bits, f.texture.fraction, f.displacement.bits, f.summed_height.bits,
         f.screen.bits, f.screen.fraction);

@@ -1,4 +1,7 @@
 #pragma once
+#include <algorithm>
+#include <cstdint>
+
 #include "modules/datapath/edge_tests.h"
 #include "modules/datapath/map_address.h"
 #include "modules/datapath/parameters.h"
@@ -24,7 +27,7 @@ constexpr Blocks blocks_of(int level, const tessera::datapath::MapGeometry& map)
 /// That of a single block.
 constexpr int highest_level(const tessera::datapath::MapGeometry& map) {
     int level = 0;
-    while ((std::max(map.width, map.height) - 1) >> level != 0)
+    while (std::max(map.width, map.height) > std::uint32_t{1} << level)
         ++level;
     return level;
 }

@@ -9,7 +9,20 @@
 
 namespace range_test {
 
-using namespace tessera::datapath;
+using tessera::datapath::absolute_difference;
+using tessera::datapath::Entries;
+using tessera::datapath::entry_bytes;
+using tessera::datapath::Formats;
+using tessera::datapath::HeightDecision;
+using tessera::datapath::HeightEdge;
+using tessera::datapath::HeightTestFunctions;
+using tessera::datapath::integer_part;
+using tessera::datapath::Reads;
+using tessera::datapath::Registers;
+using tessera::datapath::TableLayout;
+using tessera::datapath::TestParameters;
+using tessera::datapath::TexCoord;
+using tessera::datapath::texel_index;
 
 /// Range Test, in place of the Summed Height Test: do the map's heights around an edge differ by more than a threshold?
 /// The host makes a pyramid of minima and maxima.

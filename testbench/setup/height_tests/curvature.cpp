@@ -16,7 +16,7 @@ namespace {
 class CurvatureHost : public HeightTestHost {
   public:
     const char* meaning() const override {
-        return "for any base mesh: the host fits quadratics to the map, and an edge requests a split if they deviate from its chord";
+        return "the host fits quadratics to the map, for any base mesh, and an edge requests a split if they deviate from its chord";
     }
     const std::vector<HeightThresholdKey>& thresholds() const override {
         static const std::vector<HeightThresholdKey> keys{

@@ -15,7 +15,7 @@ namespace {
 class MipmapHost : public HeightTestHost {
   public:
     const char* meaning() const override {
-        return "the alternative that the paper discusses: compares heights of the map filtered to the edge's length";
+        return "compares heights of the map filtered to the edge's length, the alternative that the paper discusses";
     }
     const std::vector<HeightThresholdKey>& thresholds() const override {
         static const std::vector<HeightThresholdKey> keys{

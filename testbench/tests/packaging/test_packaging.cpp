@@ -320,12 +320,16 @@ TEST_CASE("a library that is no height test is refused with the reason") {
         "extern \"C\" const Test* tessera_height_test() { return &test; }\n";
     compile(older);
     refused("test.so", "it was built with tessera 0.0.1, this is ");
-    compile(
-        "struct Functions { const void* table; const char* name; } functions{nullptr, \"rank\"};\n"
-        "struct Test { const char* version; const void *a, *b, *c; } test{\"" +
-        std::string(version) + "\", &functions, nullptr, nullptr};\n" +
-        "extern \"C\" const Test* tessera_height_test() { return &test; }\n");
-    refused("test.so", "there is a height test rank: give its own another name");
+    const auto named = [&](const std::string& name) {
+        compile("struct Functions { const void* table; const char* name; } functions{nullptr, \"" + name + "\"};\n" +
+                "struct Test { const char* version; const void *a, *b, *c; } test{\"" + version +
+                "\", &functions, nullptr, nullptr};\n" +
+                "extern \"C\" const Test* tessera_height_test() { return &test; }\n");
+    };
+    named("rank");
+    refused("test.so", "there is another height test rank: rename the library's");
+    named("view");
+    refused("test.so", "is called \"view\": choose a name of lower-case letters, digits and _, other than base");
 }
 
 TEST_CASE("a client keeps its variables and its warnings") {

@@ -2,6 +2,7 @@
 #include <sstream>
 #include <string>
 
+#include "modules/timing/all_units.h"
 #include "testbench/job/read_job.h"
 
 namespace tessera::testing {
@@ -19,21 +20,20 @@ template <class Value>
 std::string every_unit(const std::string& figure, Value value) {
     std::ostringstream settings;
     int k = 0;
-    for (const char* const unit : {"get_triangle", "calculate_new_p", "displace_vertex", "transform", "calculate_new_u",
-                                   "tex_coord_test", "summed_height_test", "normal_test", "view_test",
-                                   "pass_or_tessellate", "tessellation", "triangle_queue", "lighting"})
-        settings << "timing." << unit << '_' << figure << '=' << value(k++) << ' ';
+    for (const UnitSpec& unit : all_units)
+        if (unit.timing != nullptr)
+            settings << "timing." << unit.name << '_' << figure << '=' << value(k++) << ' ';
     return settings.str();
 }
 inline std::string every_unit(const std::string& figure, int value) {
     return every_unit(figure, [=](int) { return value; });
 }
 
-/// The same for the three tables' latency, width or buffer.
+/// The same for every table's latency, width or buffer.
 inline std::string every_table(const std::string& figure, int value) {
     std::ostringstream settings;
-    for (const char* const table : {"displacement_map", "normal_map", "summed_height_table"})
-        settings << "timing." << table << '_' << figure << '=' << value << ' ';
+    for (const MemorySpec& table : all_table_memories)
+        settings << "timing." << table.name << '_' << figure << '=' << value << ' ';
     return settings.str();
 }
 

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <string>
 
-#include "modules/datapath/height_tests.h"
 #include "modules/datapath/curvature.h"
+#include "modules/datapath/height_tests.h"
 #include "modules/datapath/midpoint.h"
 #include "modules/datapath/mipmap.h"
 #include "modules/datapath/table_shapes.h"

@@ -1,9 +1,9 @@
-#include "modules/datapath/height_tests.h"
 #include "modules/datapath/curvature.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "modules/datapath/height_tests.h"
 #include "modules/datapath/midpoint.h"
 #include "modules/datapath/table_shapes.h"
 #include "testbench/common/random.h"

@@ -1,4 +1,3 @@
-#include "modules/datapath/height_tests.h"
 #include "modules/datapath/mipmap.h"
 
 #include <catch2/catch.hpp>
@@ -6,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "modules/datapath/height_tests.h"
 #include "modules/datapath/table_shapes.h"
 
 using namespace tessera::datapath;

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "modules/datapath/height_tests.h"
 #include "modules/datapath/all_intermediates.h"
+#include "modules/datapath/height_tests.h"
 #include "modules/datapath/registers.h"
 #include "testbench/tests/support/count_members.h"
 #include "testbench/tests/support/source_folder.h"
@@ -74,11 +74,26 @@ std::map<std::string, std::string> functions() {
 }
 
 /// Functions of the model without hardware.
-const std::set<std::string> without_hardware{
-    "entry_bytes", "packed_triangle_bytes", "stream_widths", "bits_for", "height_entry_bits", "rank_entry_bits",
-    "ordering_bits", "curvature_threshold_bits", "mipmap_threshold_bits", "covered_texels", "store_word",
-    "load_word", "make_reciprocal_seeds", "make_reciprocal_root_seeds", "integer_square_root", "wider",
-    "signed_bits", "first_too_wide", "fits_every_format", "visit_intermediates"};
+const std::set<std::string> without_hardware{"entry_bytes",
+                                             "packed_triangle_bytes",
+                                             "stream_widths",
+                                             "bits_for",
+                                             "height_entry_bits",
+                                             "rank_entry_bits",
+                                             "ordering_bits",
+                                             "curvature_threshold_bits",
+                                             "mipmap_threshold_bits",
+                                             "covered_texels",
+                                             "store_word",
+                                             "load_word",
+                                             "make_reciprocal_seeds",
+                                             "make_reciprocal_root_seeds",
+                                             "integer_square_root",
+                                             "wider",
+                                             "signed_bits",
+                                             "first_too_wide",
+                                             "fits_every_format",
+                                             "visit_intermediates"};
 
 std::string in_code(const std::string& name) {
     return name.find(' ') == std::string::npos ? "`" + name + "`" : name;

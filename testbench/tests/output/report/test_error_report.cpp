@@ -1,10 +1,11 @@
-#include "modules/datapath/height_tests.h"
 #include "testbench/output/report/error_report.h"
 
 #include <catch2/catch.hpp>
 #include <map>
 #include <string>
 #include <variant>
+
+#include "modules/datapath/height_tests.h"
 
 using namespace tessera;
 using Catch::Contains;
