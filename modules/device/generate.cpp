@@ -75,9 +75,8 @@ std::string names_of(const std::vector<DeviceRegister>& registers) {
         text += (text.empty() ? "`" : ", `") + r.name.substr(0, bracket);
         if (bracket != std::string::npos) {
             const std::string array = r.name.substr(0, bracket + 1);
-            const auto elements = std::count_if(registers.begin(), registers.end(), [&](const DeviceRegister& it) {
-                return it.name.rfind(array, 0) == 0;
-            });
+            const auto elements = std::count_if(registers.begin(), registers.end(),
+                                                [&](const DeviceRegister& it) { return it.name.rfind(array, 0) == 0; });
             text += "[0.." + std::to_string(elements - 1) + ']';
         }
         text += '`';

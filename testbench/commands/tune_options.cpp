@@ -39,9 +39,10 @@ void TuneOptions::add_to(CLI::App& tune) {
     tune.add_option("--metric", metric_, "error to use: rms or max");
     tune.add_option(
             "--tests", order_.tests,
-            fmt::format("thresholds to search: normal, {}, view; rank: that of a Rank Test, with --metric max that of a "
-                        "Bound Test; with both, the better is used; default: those of the tests that the job enables",
-                        fmt::join(searched_height_tests(), " or ")))
+            fmt::format(
+                "thresholds to search: normal, {}, view; rank: that of a Rank Test, with --metric max that of a "
+                "Bound Test; with both, the better is used; default: those of the tests that the job enables",
+                fmt::join(searched_height_tests(), " or ")))
         ->delimiter(',')
         ->allow_extra_args(false);
     vary_given_ = tune.add_option("--vary", vary_,

@@ -33,8 +33,8 @@ Job moved_to(const std::filesystem::path& folder, const Job& job) {
 }
 
 std::string head_of(const KeyTable& table, const std::vector<std::string>& columns) {
-    std::string text = fmt::format("### {}\n\n{}\n\n", table.name.empty() ? "Top level" : '`' + table.name + '`',
-                                   table.description);
+    std::string text =
+        fmt::format("### {}\n\n{}\n\n", table.name.empty() ? "Top level" : '`' + table.name + '`', table.description);
     std::string rule = "|";
     text += '|';
     for (const std::string& column : columns) {

@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <glm/glm.hpp>
 
+#include "modules/datapath/height_tests.h"
+
 namespace tessera {
 namespace {
 

@@ -32,8 +32,10 @@ void add_height_test_host(const HeightTestHost& host) {
 std::string meaning_of_height_tests() {
     std::string text;
     for (std::size_t k = 0; k < list().size(); ++k)
-        text += std::string(k == 0 ? "" : k == 1 ? ". In its place: " : "; ") + datapath::height_tests()[k]->name + ": " +
-                list()[k]->meaning();
+        text += std::string(k == 0   ? ""
+                            : k == 1 ? ". In its place: "
+                                     : "; ") +
+                datapath::height_tests()[k]->name + ": " + list()[k]->meaning();
     return text;
 }
 

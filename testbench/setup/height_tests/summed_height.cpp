@@ -13,9 +13,7 @@ namespace {
 
 class SummedHeightHost : public HeightTestHost {
   public:
-    const char* meaning() const override {
-        return "the paper's Summed Height Test";
-    }
+    const char* meaning() const override { return "the paper's Summed Height Test"; }
     const std::vector<HeightThresholdKey>& thresholds() const override {
         static const std::vector<HeightThresholdKey> keys{
             {"summed_height_threshold", 0.03, "full-scale texels (sum), full scale (area)", between(0, 1e9),
