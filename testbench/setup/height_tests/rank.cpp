@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "modules/datapath/rank.h"
-#include "testbench/setup/bound_promise.h"
 #include "testbench/setup/height_tests/height_test_host.h"
 #include "testbench/setup/height_tests/table_rows.h"
 #include "testbench/setup/view.h"
