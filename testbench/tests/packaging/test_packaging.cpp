@@ -272,12 +272,13 @@ TEST_CASE("a height test of one's own that is wrong fails its run, and names the
     const std::vector<std::string> build{
         commands[0], std::regex_replace(commands[1], std::regex("-S \\S+"), "-S ~/edited"), commands[2]};
     struct Fault {
-        const char *file, *before, *after, *says;
+        const char *file, *before, *after, *threshold, *says;
     };
-    for (const Fault& fault : {Fault{"host.h", "std::min(low[to]", "std::max(low[to]", "range table: "},
-                               {"host.h", "highest, highest,", "highest / 2, highest,", "tests.range_threshold = "},
-                               {"range_test.h", "highest - lowest > limit", "highest - lowest >= limit", ""},
-                               {"range_test.h", "table.rows = 1;", "table.rows = 2;", "range_table.rows = 2"}}) {
+    for (const Fault& fault :
+         {Fault{"host.h", "std::min(low[to]", "std::max(low[to]", "0.05", "range table: "},
+          {"host.h", "highest, highest,", "highest / 2, highest,", "0.05", "tests.range_threshold = "},
+          {"range_test.h", "highest - lowest > limit", "highest - lowest >= limit", "0", "Decisions: FAILED"},
+          {"range_test.h", "table.rows = 1;", "table.rows = 2;", "0.05", "range_table.rows = 2"}}) {
         INFO(fault.before);
         const std::string right = read_all(height_test / fault.file);
         const std::size_t at = right.find(fault.before);
@@ -286,11 +287,12 @@ TEST_CASE("a height test of one's own that is wrong fails its run, and names the
                   std::string(right).replace(at, std::string(fault.before).size(), fault.after));
         for (const std::string& command : build)
             require_success({"bash", "-euc", command + " 2>&1"}, source_folder(), at_home(home.path()));
-        const ProgramEnd end = run_with_library(home.path() / "range/librange_test.so",
-                                                {"hardware.height_test=range", "tests.range_threshold=0"}, home.path());
+        const ProgramEnd end = run_with_library(
+            home.path() / "range/librange_test.so",
+            {"hardware.height_test=range", std::string("tests.range_threshold=") + fault.threshold}, home.path());
         INFO(end.text());
         CHECK(end.exit_code == 1);
-        CHECK_THAT(end.text(), Contains(fault.says));
+        CHECK_THAT(read_all(home.path() / "out/conformance.txt"), Contains(fault.says));
         write_all(home.path() / "edited" / fault.file, right);
     }
 }
