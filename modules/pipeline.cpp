@@ -68,6 +68,11 @@ Pipeline::Pipeline(const sc_core::sc_module_name& name, const datapath::Register
       answer_limit_(clock.period() * design.answer_cycles),
       transport_(design.transport),
       random_stalls_(design.timing.stalls.per_mille > 0) {
+    for (const std::type_index& replaced : made_.factory().unused())
+        SC_REPORT_WARNING("tessera/pipeline",
+                          (std::string(this->name()) + ": UnitFactory::replace() without effect: this " +
+                           "design has no unit of the class " + replaced.name())
+                              .c_str());
     attach();
     set_table_areas();
     wire();

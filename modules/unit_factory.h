@@ -3,7 +3,9 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <set>
 #include <systemc>
+#include <type_traits>
 #include <typeindex>
 #include <utility>
 
@@ -11,6 +13,7 @@
 #include "modules/memories/table_cache.h"
 #include "modules/memories/table_memory.h"
 #include "modules/sockets/memory_port.h"
+#include "modules/stage/unit.h"
 #include "modules/timing/design.h"
 
 namespace tessera {
@@ -32,7 +35,9 @@ class UnitFactory {
     /// `maker` makes each AnyUnit, a class that the machine makes (pipeline.h, tessellation_tests.h).
     template <class AnyUnit>
     void replace(Maker<AnyUnit> maker) {
+        static_assert(std::is_base_of_v<Unit, AnyUnit>);
         makers_[typeid(AnyUnit)] = std::move(maker);
+        unused_.insert(typeid(AnyUnit));
     }
     template <class AnyUnit, class Variant>
     void replace() {
@@ -41,11 +46,15 @@ class UnitFactory {
     }
 
     template <class AnyUnit>
-    std::unique_ptr<AnyUnit> make(Name name, const UnitContext& context) const {
+    std::unique_ptr<AnyUnit> make(Name name, const UnitContext& context) {
+        unused_.erase(typeid(AnyUnit));
         const auto maker = makers_.find(typeid(AnyUnit));
         return maker == makers_.end() ? std::make_unique<AnyUnit>(name, context)
                                       : std::any_cast<const Maker<AnyUnit>&>(maker->second)(name, context);
     }
+
+    /// The replaced classes of which no machine has made a unit yet.
+    const std::set<std::type_index>& unused() const { return unused_; }
 
     /// Called with each module that has outputs, before they are bound. Override to interpose on its streams
     /// (StreamOutput).
@@ -58,6 +67,7 @@ class UnitFactory {
 
   private:
     std::map<std::type_index, std::any> makers_;
+    std::set<std::type_index> unused_;
 };
 
 }  // namespace tessera

@@ -345,6 +345,22 @@ void expect_error_through_packed_streams(Mode mode) {
 
 }  // namespace
 
+TEST_CASE("a replaced unit that the design does not have is warned of") {
+    struct OtherDesigns : UnitFactory {
+        OtherDesigns() { replace<FamilyTessellation, FamilyTessellation>(); }
+    } units;
+    const auto warnings = [] { return sc_core::sc_report_handler::get_count(sc_core::SC_WARNING); };
+    const auto before = warnings();
+    const MachineSetup paper = setup_of(in_mode(Mode::timed));
+    NamedMachine machine("machine", paper, &units);
+    CHECK(warnings() == before + 1);
+    MachineSetup modern = paper;
+    modern.design.work = Work::family;
+    modern.registers.formats.families = true;
+    NamedMachine other("other", modern, &units);
+    CHECK(warnings() == before + 1);
+}
+
 TEST_CASE("replaced unit: a modified Summed Height Test, timed mode") {
     expect_halved_test(timed_job());
 }
