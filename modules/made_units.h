@@ -1,5 +1,4 @@
 #pragma once
-#include <algorithm>
 #include <initializer_list>
 #include <memory>
 #include <string>
@@ -45,7 +44,10 @@ class MadeUnits {
 /// The only one of these that is made; the others are null.
 template <class AnyUnit>
 AnyUnit& the_one(std::initializer_list<AnyUnit*> units) {
-    return **std::find_if(units.begin(), units.end(), [](const AnyUnit* unit) { return unit != nullptr; });
+    AnyUnit* made = nullptr;
+    for (AnyUnit* const unit : units)
+        made = unit != nullptr ? unit : made;
+    return *made;
 }
 
 }  // namespace tessera

@@ -35,7 +35,7 @@ struct BoundRun {
         finished = bare.run(emitted, most_edges) < most_edges;
         mesh = recorded_mesh(
             emitted, {setup.registers.formats, setup.registers.map, setup.model_scale.scale, setup.model_scale.centre});
-        const datapath::Saturations saturations = bare.saturations();
+        const datapath::Saturations saturations = bare.saturations;
         const InputSaturations& input = setup.input_saturations;
         saturated = saturations.displaced_position + saturations.view_distance + input.position + input.registers > 0;
         result = check_bound(job, inputs.mesh, inputs.map, setup, mesh, saturated);

@@ -22,7 +22,7 @@ struct Bench {
     Driver<ViewOperands> edges{"edges", clock};
     Driver<ScreenCorner> corners{"corners", clock};
 
-    Bench() : unit("unit", {clock, with_threshold(registers), design}, all_parts) {
+    Bench() : unit("unit", {clock, with_threshold(registers), design}) {
         clock.attach(unit);
         edges.out.bind(unit.input);
         corners.out.bind(*unit.from_transform);
