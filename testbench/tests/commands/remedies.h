@@ -277,7 +277,7 @@ inline const std::map<std::string, std::vector<Remedy>>& remedies() {
              {"tessera tune small.toml --triangles 0", "a mesh has at least one", "tessera tune small.toml --triangles 40 --vary none"},
              {"tessera tune small.toml --error 0", "must be above 0", "tessera tune small.toml --error 0.2 --vary none"},
              {"tessera tune small.toml --error 0.05 --metric mean", "must be rms or max", "tessera tune small.toml --error 0.6 --metric max --vary none"},
-             {"tessera tune small.toml --triangles 40 --tests none", "must be normal, {}, view or rank", "tessera tune small.toml --triangles 200 --tests normal --vary none"},
+             {"tessera tune small.toml --triangles 40 --tests none", "choose from {}", "tessera tune small.toml --triangles 200 --tests normal --vary none"},
              {"tessera tune small.toml --triangles 40 --vary all", "must be unit, generation or triangulation, or only none", "tessera tune small.toml --triangles 40 --vary none"},
              {"tessera tune small.toml --triangles 40 --output ''", "name the tuned job's file", "tessera tune small.toml --triangles 40 --vary none --output b.toml"},
              {"tessera tune small.toml --triangles 5", "use at least that many", "tessera tune small.toml --triangles 18 --vary none"},
