@@ -21,8 +21,11 @@ std::vector<UnitNumbers::Entry> number_units() {
     const auto add_height = [&](const std::string& before, const std::string& after, const std::string& shown,
                                 std::string (datapath::HeightTestFunctions::*name)() const) {
         ++number;
-        for (const datapath::HeightTestFunctions* const test : datapath::height_tests())
-            entries.push_back({number, before + (test->*name)() + after, shown});
+        for (const datapath::HeightTestFunctions* const test : datapath::height_tests()) {
+            std::string whole = before;
+            whole.append((test->*name)()).append(after);
+            entries.push_back({number, whole, shown});
+        }
     };
     const auto numbered = [](const char* name, unsigned copy) {
         return std::string(name) + (copy == 0 ? "" : '_' + std::to_string(copy));
