@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "modules/datapath/bilinear.h"
 #include "modules/datapath/pack_triangle.h"
+#include "modules/timing/all_units.h"
 #include "modules/timing/design_check.h"
 
 namespace tessera {
@@ -38,13 +40,8 @@ Pipeline::Pipeline(const sc_core::sc_module_name& name, const datapath::Register
                 ? design.clock->period()
                 : clock_period(this->name(), design.timing.cycle_picoseconds),
             design.clock != nullptr ? first_rising_edge(*design.clock) : sc_core::SC_ZERO_TIME),
-      made_({clock, registers, design}, factory == nullptr ? standard_units() : *factory, units_),
-      tessellation_tests("tessellation_tests", design.tests_units,
-                         [&](const char* unit_name, std::size_t number) {
-                             return new TessellationTests(unit_name,
-                                                          {clock, registers, design, static_cast<unsigned>(number)},
-                                                          made_.factory(), units_);
-                         }),
+      netlist_((this->*(design.work == Work::triangle ? &Pipeline::triangle_design : &Pipeline::family_design))(
+          {{clock, registers, design}, factory == nullptr ? standard_units() : *factory})),
       off_chip_memory("off_chip_memory", clock, design.timing.off_chip_memory, design.timing.stalls,
                       design.queue.off_chip_triangles *
                           (datapath::packed_triangle_bytes(registers.formats) + datapath::packed_triangle_tag_bytes),
@@ -68,11 +65,12 @@ Pipeline::Pipeline(const sc_core::sc_module_name& name, const datapath::Register
       answer_limit_(clock.period() * design.answer_cycles),
       transport_(design.transport),
       random_stalls_(design.timing.stalls.per_mille > 0) {
-    for (const std::type_index& replaced : made_.factory().unused())
+    for (const std::type_index& replaced : netlist_.factory().unused())
         SC_REPORT_WARNING("tessera/pipeline",
                           (std::string(this->name()) + ": UnitFactory::replace() without effect: this " +
                            "design has no unit of the class " + replaced.name())
                               .c_str());
+    list_units();
     attach();
     set_table_areas();
     wire();
@@ -118,9 +116,9 @@ void Pipeline::join(MemoryPort& port, TableMemory& memory) {
     const auto table =
         std::find_if(tables_.begin(), tables_.end(), [&](const Table& t) { return t.memory == &memory; });
     if (table->cache == nullptr)
-        made_.factory().join(port, memory);
+        netlist_.factory().join(port, memory);
     else
-        made_.factory().join(port, *table->cache);
+        netlist_.factory().join(port, *table->cache);
     readers_.push_back({&port, &memory == displacement_map_for_tests.get() ? &displacement_map : &memory});
 }
 
@@ -223,97 +221,49 @@ void Pipeline::see_whether_drained() {
     drained_.notify();
 }
 
-void Pipeline::wire() {
-    UnitFactory& factory = made_.factory();
-    for (Unit* unit : units_)
-        factory.made(*unit);
-    for (TessellationTests& tests : tessellation_tests)
-        tests.wire();
-    get_triangle.to_calculate_new_p.bind(calculate_new_p.from_get_triangle);
-    triangle_queue.level.bind(get_triangle.queue_level);
-    calculate_new_p.to_displace_vertex.bind(displace_vertex.from_calculate_new_p);
-    displace_vertex.to_transform.bind(transform.from_displace_vertex);
-    join(displace_vertex.displacement_map, displacement_map);
-    if (displace_vertex.normal_map)
-        join(*displace_vertex.normal_map, normal_map);
-    if (family_tessellation == nullptr)
-        wire_triangles();
-    else
-        wire_families();
-    for (TessellationTests& tests : tessellation_tests) {
-        join(tests.height_test.table, height_table);
-        if (tests.height_test.displacement_map)
-            join(*tests.height_test.displacement_map,
-                 displacement_map_for_tests != nullptr ? *displacement_map_for_tests : displacement_map);
-        for (NormalTest* normal_test : tests.normal_tests())
-            join(normal_test->normal_map, normal_map);
-    }
-    for (const Table& table : tables_)
-        if (table.cache != nullptr)
-            factory.join(table.cache->table, *table.memory);
-    pass_or_tessellate.to_lighting.bind(lighting.from_pass_or_tessellate);
-    triangle_queue.to_get_triangle.bind(get_triangle.from_triangle_queue);
-    factory.join(triangle_queue.off_chip_memory, off_chip_memory);
-}
-
-void Pipeline::wire_triangles() {
-    get_triangle.to_join.bind(triangle_pass_or_tessellate->from_get_triangle);
-    transform.to_join.bind(triangle_pass_or_tessellate->from_transform);
-    for (std::size_t k = 0; k < tessellation_tests.size(); ++k) {
-        TessellationTests& tests = tessellation_tests[k];
-        get_triangle.to_tessellation_tests[k].bind(tests.calculate_new_u.input);
-        transform.to_view_test[k].bind(*tests.view_test.from_transform);
-        tests.to_pass_or_tessellate().bind(triangle_pass_or_tessellate->from_tessellation_tests[k]);
-    }
-    triangle_pass_or_tessellate->to_tessellation.bind(triangle_tessellation->from_pass_or_tessellate);
-    triangle_tessellation->to_triangle_queue.bind(triangle_queue.from_tessellation);
-}
-
-void Pipeline::wire_families() {
-    get_triangle.to_join.bind(family_tessellation->from_get_triangle);
-    transform.to_join.bind(family_tessellation->from_transform);
-    TessellationTests& tests = tessellation_tests[0];
-    for (std::size_t lane = 0; lane < tests.lanes().size(); ++lane) {
-        family_tessellation->to_tessellation_tests[lane].bind(tests.lanes()[lane].calculate_new_u.input);
-        tests.to_pass_or_tessellate(lane).bind(family_pass_or_tessellate->from_tessellation_tests[lane]);
-    }
-    family_tessellation->to_pass_or_tessellate.bind(family_pass_or_tessellate->from_tessellation);
-    family_pass_or_tessellate->to_triangle_queue.bind(triangle_queue.from_tessellation);
-}
-
-/// Lists the memories, and attaches units and memories to the clock downstream first (cycle_scheduler.h).
-void Pipeline::attach() {
+/// Lists units and memories for reports: units in the order of all_units, those of a Tessellation Tests unit together.
+void Pipeline::list_units() {
+    const auto place = [this](const Unit* unit) {
+        return std::find_if(all_units.begin(), all_units.end(), [&](const UnitSpec& spec) {
+            return unit->get_parent_object() != this ? spec.per != Per::machine
+                                                     : unit->basename() == std::string_view(spec.name);
+        });
+    };
+    units_ = netlist_.units();
+    std::stable_sort(units_.begin(), units_.end(), [&](const Unit* a, const Unit* b) { return place(a) < place(b); });
     const datapath::Registers& r = registers_;
     tables_.push_back({&displacement_map, displacement_map_cache.get(), &r.displacement_map});
     if (displacement_map_for_tests != nullptr)
         tables_.push_back({displacement_map_for_tests.get(), nullptr, &r.displacement_map});
     tables_.push_back({&normal_map, normal_map_cache.get(), &r.normal_map});
     tables_.push_back({&height_table, height_table_cache.get(), &r.height_table});
-    clock.attach(off_chip_memory);
     for (const Table& table : tables_) {
         units_.push_back(table.memory);
-        clock.attach(*table.memory);
         if (table.cache != nullptr)
             caches_.push_back(table.cache);
     }
     units_.push_back(&off_chip_memory);
-    for (TableCache* cache : caches_) {
-        units_.push_back(cache);
+    units_.insert(units_.end(), caches_.begin(), caches_.end());
+}
+
+/// Downstream first (cycle_scheduler.h); a memory is downstream of what reads it.
+void Pipeline::attach() {
+    clock.attach(off_chip_memory);
+    for (const Table& table : tables_)
+        clock.attach(*table.memory);
+    for (TableCache* cache : caches_)
         clock.attach(*cache);
-    }
-    clock.attach(lighting);
-    clock.attach(triangle_queue);
-    if (triangle_tessellation != nullptr)
-        clock.attach(tessellation);
-    clock.attach(pass_or_tessellate);
-    for (TessellationTests& tests : tessellation_tests)
-        tests.attach(clock);
-    if (family_tessellation != nullptr)
-        clock.attach(tessellation);
-    clock.attach(transform);
-    clock.attach(displace_vertex);
-    clock.attach(calculate_new_p);
-    clock.attach(get_triangle);
+    for (Unit* unit : netlist_.downstream_first())
+        clock.attach(*unit);
+}
+
+void Pipeline::wire() {
+    for (Unit* unit : units_)
+        netlist_.factory().made(*unit);
+    netlist_.bind();
+    for (const Table& table : tables_)
+        if (table.cache != nullptr)
+            netlist_.factory().join(table.cache->table, *table.memory);
 }
 
 bool Pipeline::idle() const {
@@ -332,14 +282,7 @@ void Pipeline::tables_changed() {
 }
 
 std::uint64_t Pipeline::passes_under_way() const {
-    const std::size_t decided =
-        triangle_tessellation == nullptr ? 0 : triangle_tessellation->from_pass_or_tessellate.size();
-    return get_triangle.activity().items_in() + decided - pass_or_tessellate.activity().items_out();
-}
-
-std::size_t Pipeline::most_ahead_of_parts() const {
-    return family_tessellation != nullptr ? family_tessellation->most_ahead_of_parts()
-                                          : triangle_pass_or_tessellate->most_ahead_of_parts();
+    return get_triangle.activity().items_in() + tessellation.waiting() - pass_or_tessellate.activity().items_out();
 }
 
 std::uint64_t Pipeline::reads(const TableMemory& table) const {

@@ -4,20 +4,19 @@
 #include <systemc>
 #include <vector>
 
-#include "modules/made_units.h"
 #include "modules/memories/off_chip_memory.h"
 #include "modules/memories/table_cache.h"
 #include "modules/memories/table_memory.h"
+#include "modules/netlist.h"
 #include "modules/tessellation_tests.h"
 #include "modules/timing/cycle_scheduler.h"
 #include "modules/timing/design.h"
 #include "modules/units/calculate_new_p.h"
+#include "modules/units/deciding_unit.h"
 #include "modules/units/displace_vertex.h"
-#include "modules/units/families/pass_or_tessellate.h"
-#include "modules/units/families/tessellation.h"
 #include "modules/units/get_triangle.h"
+#include "modules/units/joining_unit.h"
 #include "modules/units/lighting.h"
-#include "modules/units/pass_or_tessellate.h"
 #include "modules/units/tessellation.h"
 #include "modules/units/transform.h"
 #include "modules/units/triangle_queue.h"
@@ -50,28 +49,22 @@ class Pipeline : public sc_core::sc_module {
   public:
     CycleScheduler clock;
 
+    sc_core::sc_vector<TessellationTests> tessellation_tests{"tessellation_tests"};
+
   private:
-    std::vector<Unit*> units_;
-    MadeUnits made_;
+    Netlist netlist_;
+    const JoiningUnit& join_ = netlist_.the<JoiningUnit>();
 
   public:
-    // In the order of the figures.
-    GetTriangle& get_triangle = made_.make<GetTriangle>("get_triangle");
-    CalculateNewP& calculate_new_p = made_.make<CalculateNewP>("calculate_new_p");
-    DisplaceVertex& displace_vertex = made_.make<DisplaceVertex>("displace_vertex");
-    Transform& transform = made_.make<Transform>("transform");
-    sc_core::sc_vector<TessellationTests> tessellation_tests;
-    // Those of the other design are null.
-    PassOrTessellate* const triangle_pass_or_tessellate =
-        made_.make_for<PassOrTessellate>(Work::triangle, "pass_or_tessellate");
-    Tessellation* const triangle_tessellation = made_.make_for<Tessellation>(Work::triangle, "tessellation");
-    FamilyPassOrTessellate* const family_pass_or_tessellate =
-        made_.make_for<FamilyPassOrTessellate>(Work::family, "pass_or_tessellate");
-    FamilyTessellation* const family_tessellation = made_.make_for<FamilyTessellation>(Work::family, "tessellation");
-    DecidingUnit& pass_or_tessellate = the_one<DecidingUnit>({triangle_pass_or_tessellate, family_pass_or_tessellate});
-    TessellatingUnit& tessellation = the_one<TessellatingUnit>({triangle_tessellation, family_tessellation});
-    TriangleQueue& triangle_queue = made_.make<TriangleQueue>("triangle_queue");
-    Lighting& lighting = made_.make<Lighting>("lighting");
+    // What each design has one of.
+    GetTriangle& get_triangle = netlist_.the<GetTriangle>();
+    CalculateNewP& calculate_new_p = netlist_.the<CalculateNewP>();
+    DisplaceVertex& displace_vertex = netlist_.the<DisplaceVertex>();
+    Transform& transform = netlist_.the<Transform>();
+    DecidingUnit& pass_or_tessellate = netlist_.the<DecidingUnit>();
+    TessellatingUnit& tessellation = netlist_.the<TessellatingUnit>();
+    TriangleQueue& triangle_queue = netlist_.the<TriangleQueue>();
+    Lighting& lighting = netlist_.the<Lighting>();
     OffChipMemory off_chip_memory;
     DisplacementMap displacement_map;
     std::unique_ptr<DisplacementMap> displacement_map_for_tests;  ///< its second side; null: none
@@ -109,8 +102,10 @@ class Pipeline : public sc_core::sc_module {
     /// whenever nothing is left to do and nothing is in flight, in functional mode after each base triangle.
     const sc_core::sc_event& drained() const { return drained_; }
 
-    /// Every unit and memory, in the order of the figures.
+    /// Every unit and memory, units in the order of all_units.h.
     const std::vector<Unit*>& units() const { return units_; }
+    /// The units in the order of the data's flow, of any class: netlist().the<PassOrTessellate>().
+    const Netlist& netlist() const { return netlist_; }
     /// The caches of the tables that have one.
     const std::vector<TableCache*>& caches() const { return caches_; }
 
@@ -126,7 +121,7 @@ class Pipeline : public sc_core::sc_module {
     /// Triangles between Get Triangle and the end of their pass, in Tessellation or on the way to Lighting.
     std::uint64_t passes_under_way() const;
     /// Most triangles that waited for their first part at the unit that joins the parts.
-    std::size_t most_ahead_of_parts() const;
+    std::size_t most_ahead_of_parts() const { return join_.most_ahead_of_parts(); }
     std::uint64_t edges_tested() const { return pass_or_tessellate.counts().edges_tested; }
     std::uint64_t displacement_map_reads() const { return reads(displacement_map); }
     std::uint64_t normal_map_reads() const { return reads(normal_map); }
@@ -146,9 +141,16 @@ class Pipeline : public sc_core::sc_module {
         const datapath::TableLayout* layout;
     };
 
+    // The list of each design (netlists.cpp), and what they share.
+    Netlist triangle_design(Netlist net);
+    Netlist family_design(Netlist net);
+    void add_geometry(Netlist& net);
+    template <class AnyUnit>
+    static AnyUnit& add_join(Netlist& net, const char* name);
+    void add_tests(Netlist& net);
+    void add_ends(Netlist& net, StreamOutput<datapath::Triangle>& to_triangle_queue, DecidingUnit& deciding);
+    void list_units();
     void wire();
-    void wire_triangles();
-    void wire_families();
     std::unique_ptr<TableCache> make_cache(const char* name, const datapath::TableLayout& layout,
                                            const MemoryTiming& timing, const StallParameters& stalls);
     std::unique_ptr<DisplacementMap> make_second_side(const datapath::Registers& registers, const Design& design);
@@ -165,6 +167,7 @@ class Pipeline : public sc_core::sc_module {
     unsigned frames_begun_ = 0;  // and not ended, by the sources
     bool has_frames_ = false;
     bool frame_drained_ = false;
+    std::vector<Unit*> units_;
     std::vector<TableReader> readers_;
     bool tables_elsewhere_ = false;
     std::vector<std::unique_ptr<AnswerWatch>> watches_;

@@ -2,16 +2,13 @@
 #include <systemc>
 #include <vector>
 
-#include "modules/made_units.h"
-#include "modules/timing/cycle_scheduler.h"
+#include "modules/netlist.h"
 #include "modules/units/edge_tests/calculate_new_u.h"
-#include "modules/units/edge_tests/collect_tests.h"
+#include "modules/units/edge_tests/collecting_unit.h"
 #include "modules/units/edge_tests/height_test.h"
 #include "modules/units/edge_tests/normal.h"
-#include "modules/units/edge_tests/sequence_tests.h"
 #include "modules/units/edge_tests/tex_coord.h"
 #include "modules/units/edge_tests/view.h"
-#include "modules/units/families/sequence_tests.h"
 
 namespace tessera {
 
@@ -35,7 +32,7 @@ namespace tessera {
 /// Tests, and several Normal Tests after it; edges arrive from Tessellation, with P's.
 ///
 /// In:   calculate_new_u.input: edges; vertices of a base triangle. view_test.from_transform: their screen positions.
-/// Out:  to_pass_or_tessellate(): TestedEdge.
+/// Out:  collector.tested_edges(): TestedEdge.
 /// With three units each receives one edge of a triangle and, for a base triangle, the two vertices of the edge
 /// (parts_for_tests): they share nothing but the memories. Each corner is then bumped twice, for three more reads of
 /// the normal map and one more cycle per base triangle.
@@ -43,52 +40,26 @@ namespace tessera {
 ///       one such unit or three, one for each edge of a triangle, which share the memories.
 /// Waits for Transform (base triangles), the Summed Height Table, the normal map; held back by Pass or Tessellate.
 class TessellationTests : public sc_core::sc_module {
-    MadeUnits made_;
+    Netlist netlist_;
 
   public:
-    CalculateNewU& calculate_new_u = made_.make<CalculateNewU>("calculate_new_u");
-    TexCoordTest& tex_coord_test = made_.make<TexCoordTest>("tex_coord_test");
-    /// The Summed Height Test, or the test in its place.
-    HeightTestUnit& height_test =
-        made_.make<HeightTestUnit>(functions_of(made_.context().registers.formats.height_test).unit());
-    NormalTest& normal_test = made_.make<NormalTest>("normal_test");
-    ViewTest& view_test = made_.make<ViewTest>("view_test");
-    // One of these joins an edge's results; the others are null.
-    CollectTests* const collect_tests =
-        made_.context().design.test_order == TestOrder::parallel ? &made_.make<CollectTests>("collect_tests") : nullptr;
-    SequenceTests* const sequence_tests =
-        collect_tests == nullptr ? made_.make_for<SequenceTests>(Work::triangle, "sequence_tests") : nullptr;
-    FamilySequenceTests* const family_sequence_tests =
-        collect_tests == nullptr ? made_.make_for<FamilySequenceTests>(Work::family, "sequence_tests") : nullptr;
-    Unit& collector = the_one<Unit>({collect_tests, sequence_tests, family_sequence_tests});
+    // The first of each lane and of each kind.
+    CalculateNewU& calculate_new_u = netlist_.the<CalculateNewU>();
+    TexCoordTest& tex_coord_test = netlist_.the<TexCoordTest>();
+    HeightTestUnit& height_test = netlist_.the<HeightTestUnit>();  ///< the Summed Height Test, or that in its place
+    NormalTest& normal_test = netlist_.the<NormalTest>();
+    ViewTest& view_test = netlist_.the<ViewTest>();
+    CollectingUnit& collector = netlist_.the<CollectingUnit>();
 
-    /// A lane of cheap tests; the triangle design has one.
-    struct Lane {
-        CalculateNewU& calculate_new_u;
-        TexCoordTest& tex_coord_test;
-        ViewTest& view_test;
-    };
-    const std::vector<Lane>& lanes() const { return lanes_; }
-    const std::vector<NormalTest*>& normal_tests() const { return normal_tests_; }
+    TessellationTests(const sc_core::sc_module_name& name, const UnitContext& context, UnitFactory& factory)
+        : sc_module(name), netlist_(units_of(context, factory)) {}
 
-    /// units: the machine's, to which these are added in the order of figure 8, further lanes and Normal Tests last.
-    TessellationTests(const sc_core::sc_module_name& name, const UnitContext& context, UnitFactory& factory,
-                      std::vector<Unit*>& units);
-
-    StreamOutput<TestedEdge>& to_pass_or_tessellate(std::size_t lane = 0) const;
-
-    /// Binds the units inside to one another. Call once.
-    void wire();
-    /// Downstream first.
-    void attach(CycleScheduler& clock);
+    /// Its units in the order of figure 8, further lanes and Normal Tests last.
+    const Netlist& netlist() const { return netlist_; }
+    std::vector<NormalTest*> normal_tests() const { return netlist_.all<NormalTest>(); }
 
   private:
-    void wire_lanes();
-    template <class Collector>
-    void take_results(Collector& its);
-
-    std::vector<Lane> lanes_{{calculate_new_u, tex_coord_test, view_test}};
-    std::vector<NormalTest*> normal_tests_{&normal_test};
+    static Netlist units_of(const UnitContext& context, UnitFactory& factory);
 };
 
 }  // namespace tessera

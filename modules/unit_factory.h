@@ -32,7 +32,7 @@ class UnitFactory {
     UnitFactory(const UnitFactory&) = delete;
     UnitFactory& operator=(const UnitFactory&) = delete;
 
-    /// `maker` makes each AnyUnit, a class that the machine makes (pipeline.h, tessellation_tests.h).
+    /// `maker` makes each AnyUnit, a class that the machine makes (netlists.cpp).
     template <class AnyUnit>
     void replace(Maker<AnyUnit> maker) {
         static_assert(std::is_base_of_v<Unit, AnyUnit>);

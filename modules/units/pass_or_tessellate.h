@@ -12,6 +12,7 @@
 #include "modules/stage/per_triangle.h"
 #include "modules/timing/elastic_pipeline.h"
 #include "modules/units/deciding_unit.h"
+#include "modules/units/joining_unit.h"
 
 namespace tessera {
 
@@ -31,10 +32,8 @@ namespace tessera {
 ///       input, which holds as many edges as there are places. (Decision: if the first part of either branch opened a
 ///       place, triangles behind a pass for normals, which has no tests, could take all places: a deadlock.)
 /// Waits for both branches; held back by Tessellation and Lighting.
-class PassOrTessellate : public DecidingUnit {
+class PassOrTessellate : public DecidingUnit, public JoiningUnit {
   public:
-    StreamInput<TakenTriangle> from_get_triangle{"from_get_triangle"};
-    StreamInput<ScreenPoint> from_transform{"from_transform"};
     sc_core::sc_vector<StreamInput<TestedEdge>> from_tessellation_tests;  ///< one per Tessellation Tests unit
     StreamOutput<DecidedTriangle> to_tessellation{"to_tessellation"};
 
@@ -43,7 +42,7 @@ class PassOrTessellate : public DecidingUnit {
     bool joined() const override { return incomplete_.empty(); }
     std::size_t most_incomplete() const override { return most_incomplete_; }
     /// Most triangles that waited for their first part at the end of a cycle; at least one if any triangle arrived.
-    std::size_t most_ahead_of_parts() const {
+    std::size_t most_ahead_of_parts() const override {
         return std::max({most_ahead_of_parts_, ahead_of_parts_, std::size_t{from_get_triangle.taken() > 0}});
     }
 

@@ -21,6 +21,8 @@ class TessellatingUnit : public Unit {
 
     /// Triangles split into 2, 3 or 4 children, by number of children; index 1: passed on unchanged.
     const std::array<std::uint64_t, 5>& made_into() const { return made_into_; }
+    /// Decided triangles at its input.
+    virtual std::size_t waiting() const { return 0; }
     std::uint64_t children() const { return made_into_[1] + 2 * made_into_[2] + 3 * made_into_[3] + 4 * made_into_[4]; }
 
   protected:
@@ -49,6 +51,7 @@ class Tessellation : public TessellatingUnit {
 
     Tessellation(const sc_core::sc_module_name& name, const UnitContext& context);
 
+    std::size_t waiting() const override { return from_pass_or_tessellate.size(); }
     std::string describe_contents() const override;
     std::uint64_t occupied_cycles() const override {
         return one_at_a_time_cycles(timing_, activity_.items_in(), children());

@@ -7,7 +7,7 @@
 namespace tessera {
 
 CollectTests::CollectTests(const sc_core::sc_module_name& name, const UnitContext& context)
-    : Unit(name, context.clock), registers_(context.registers) {
+    : CollectingUnit(name, context.clock), registers_(context.registers) {
     add_input(context, from_normal_test);
     add_input(context, from_tex_coord_test);
     add_input(context, from_summed_height_test);

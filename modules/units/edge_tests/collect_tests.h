@@ -6,7 +6,7 @@
 #include "modules/sockets/stream_input.h"
 #include "modules/sockets/stream_output.h"
 #include "modules/stage/per_triangle.h"
-#include "modules/stage/unit.h"
+#include "modules/units/edge_tests/collecting_unit.h"
 
 namespace tessera {
 
@@ -16,7 +16,7 @@ namespace tessera {
 /// Timing: one edge per cycle, no latency of its own: wires. Capacity: for each test `results_buffer` edges that wait
 ///       for the other tests.
 /// Waits for the slowest test; held back by Pass or Tessellate.
-class CollectTests : public Unit {
+class CollectTests : public CollectingUnit {
   public:
     StreamInput<NormalResult> from_normal_test{"from_normal_test"};
     StreamInput<TexCoordResult> from_tex_coord_test{"from_tex_coord_test"};
@@ -26,6 +26,7 @@ class CollectTests : public Unit {
 
     CollectTests(const sc_core::sc_module_name& name, const UnitContext& context);
 
+    StreamOutput<TestedEdge>& tested_edges(std::size_t) override { return to_pass_or_tessellate; }
     std::string describe_contents() const override;
     std::uint64_t occupied_cycles() const override { return activity_.items_in(); }
     void trace_signals(Signals& signals) const override;

@@ -37,13 +37,13 @@ class SequenceTests : public SequencingUnit {
 
     SequenceTests(const sc_core::sc_module_name& name, const UnitContext& context);
 
+    StreamOutput<TestedEdge>& tested_edges(std::size_t) override { return to_pass_or_tessellate; }
     std::string describe_contents() const override;
     std::uint64_t occupied_cycles() const override { return activity_.items_in(); }
     void trace_signals(Signals& signals) const override;
 
   private:
     StreamOutput<NormalOperands>& normal_test() override { return to_normal_test; }
-    StreamOutput<TestedEdge>& pass_or_tessellate() override { return to_pass_or_tessellate; }
     void step() override;
     bool take_edge(std::uint64_t cycle);
     bool may_take(std::uint64_t cycle);

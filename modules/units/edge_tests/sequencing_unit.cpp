@@ -16,7 +16,7 @@ bool may_split(const TestedEdge& edge) {
 }  // namespace
 
 SequencingUnit::SequencingUnit(const sc_core::sc_module_name& name, const UnitContext& context)
-    : Unit(name, context.clock),
+    : CollectingUnit(name, context.clock),
       registers_(context.registers),
       height_first_(registers_.formats.height_test == datapath::HeightTest::rank) {
     add_input(context, from_summed_height_test);
@@ -119,7 +119,7 @@ void SequencingUnit::run_tests(Edge& edge, sc_core::sc_time& delay) {
         }
     }
     in_test_.close(edge.tested.tag.triangle);
-    pass_or_tessellate().transport(edge.tested, delay);
+    tested_edges().transport(edge.tested, delay);
 }
 
 // Inputs of the derived units.

@@ -6,7 +6,7 @@
 #include "modules/sockets/stream_input.h"
 #include "modules/sockets/stream_output.h"
 #include "modules/stage/per_triangle.h"
-#include "modules/stage/unit.h"
+#include "modules/units/edge_tests/collecting_unit.h"
 
 namespace tessera {
 
@@ -23,7 +23,7 @@ namespace tessera {
 /// the Normal Test keeps the corners' N' of one triangle at a time. Edges without a midpoint on the lattice skip it.
 /// The Normal Test then receives the edges that the Rank Test splits, for N' of their midpoints, and the others only if
 /// it is switched on.
-class SequencingUnit : public Unit {
+class SequencingUnit : public CollectingUnit {
   public:
     StreamOutput<HeightOperands> to_summed_height_test{"to_summed_height_test"};
     StreamInput<HeightResult> from_summed_height_test{"from_summed_height_test"};
@@ -46,9 +46,8 @@ class SequencingUnit : public Unit {
     Next after_normal_test(const Edge& edge) const;
     Next after_height_test(const TestedEdge& edge) const;
 
-    /// Functional mode: the outputs that are used.
+    /// Functional mode: the output that is used.
     virtual StreamOutput<NormalOperands>& normal_test() = 0;
-    virtual StreamOutput<TestedEdge>& pass_or_tessellate() = 0;
 
     const datapath::Registers& registers_;
     const bool height_first_;  // a Rank Test

@@ -39,6 +39,7 @@ class FamilySequenceTests : public SequencingUnit {
 
     FamilySequenceTests(const sc_core::sc_module_name& name, const UnitContext& context);
 
+    StreamOutput<TestedEdge>& tested_edges(std::size_t lane) override { return to_pass_or_tessellate[lane]; }
     std::string describe_contents() const override;
     std::uint64_t occupied_cycles() const override { return activity_.items_in() / lanes_.size(); }
     void trace_signals(Signals& signals) const override;
@@ -56,7 +57,6 @@ class FamilySequenceTests : public SequencingUnit {
     };
 
     StreamOutput<NormalOperands>& normal_test() override { return to_normal_test[0]; }
-    StreamOutput<TestedEdge>& pass_or_tessellate() override { return to_pass_or_tessellate[0]; }
     void step() override;
     bool take_edge(std::size_t lane, std::uint64_t cycle);
     void decided(const Edge& edge, Next next);

@@ -9,6 +9,7 @@
 #include "modules/sockets/stream_input.h"
 #include "modules/sockets/stream_output.h"
 #include "modules/stage/per_triangle.h"
+#include "modules/units/joining_unit.h"
 #include "modules/units/tessellation.h"
 
 namespace tessera {
@@ -32,10 +33,8 @@ namespace tessera {
 /// Capacity: one triangle being joined and one whose edges are being sent; triangles wait at the input from Get
 ///       Triangle until their first part arrives (triangles_ahead_of_parts).
 /// Waits for Transform; held back by Tessellation Tests and Pass or Tessellate.
-class FamilyTessellation : public TessellatingUnit {
+class FamilyTessellation : public TessellatingUnit, public JoiningUnit {
   public:
-    StreamInput<TakenTriangle> from_get_triangle{"from_get_triangle"};
-    StreamInput<ScreenPoint> from_transform{"from_transform"};
     sc_core::sc_vector<StreamOutput<TestOperands>> to_tessellation_tests;  ///< one per lane
     StreamOutput<Family> to_pass_or_tessellate{"to_pass_or_tessellate"};
 
@@ -43,8 +42,7 @@ class FamilyTessellation : public TessellatingUnit {
 
     /// Edges sent to the tests.
     std::uint64_t parts_sent() const { return parts_sent_; }
-    /// Most triangles that waited for their first part.
-    std::size_t most_ahead_of_parts() const { return most_ahead_of_parts_; }
+    std::size_t most_ahead_of_parts() const override { return most_ahead_of_parts_; }
 
     std::string describe_contents() const override;
     std::uint64_t occupied_cycles() const override {

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "modules/units/families/sequence_tests.h"
 #include "testbench/output/report/ratio.h"
 
 namespace tessera {
@@ -63,7 +64,7 @@ double utilisation(const Unit& unit, std::uint64_t cycles) {
 
 bool is_queue_or_join(const Unit& unit) {
     return dynamic_cast<const TriangleQueue*>(&unit) != nullptr ||
-           dynamic_cast<const CollectTests*>(&unit) != nullptr || dynamic_cast<const SequencingUnit*>(&unit) != nullptr;
+           dynamic_cast<const CollectingUnit*>(&unit) != nullptr;
 }
 
 std::string Limit::names() const {
@@ -163,10 +164,9 @@ std::string relieving_key(const Pipeline& pipeline, const Unit& unit) {
         return ports(&unit == pipeline.height_table_cache.get() ? height_table_spec(pipeline.registers().formats).name
                                                                 : unit.basename(),
                      1);
-    const TessellationTests& tests = pipeline.tessellation_tests[0];
-    const auto& normal_tests = tests.normal_tests();
-    if (tests.family_sequence_tests != nullptr && 2 * normal_tests.size() <= most_normal_tests &&
-        std::find(normal_tests.begin(), normal_tests.end(), &unit) != normal_tests.end())
+    const bool shared = !pipeline.netlist().all<FamilySequenceTests>().empty();
+    const std::size_t normal_tests = pipeline.netlist().all<NormalTest>().size();
+    if (shared && 2 * normal_tests <= most_normal_tests && dynamic_cast<const NormalTest*>(&unit) != nullptr)
         return "hardware.normal_tests";
     return "";
 }

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "modules/units/edge_tests/collect_tests.h"
+#include "modules/units/pass_or_tessellate.h"
+
 namespace tessera::schedule {
 
 namespace {
@@ -28,7 +31,8 @@ Plan plan_of(const tessera::Pipeline& machine, const Rasteriser& rasteriser, con
     const Timing& t = design.timing;
     const datapath::Registers& registers = machine.registers();
     const TessellationTests& tests = machine.tessellation_tests[0];
-    const PassOrTessellate& join = *machine.triangle_pass_or_tessellate;
+    const auto& join = machine.netlist().the<PassOrTessellate>();
+    const auto& collect = tests.netlist().the<CollectTests>();
     const auto input = [&](const auto& of) {
         return InputPlan{static_cast<unsigned>(of.depth()), RandomStalls(t.stalls, of.name())};
     };
@@ -56,14 +60,14 @@ Plan plan_of(const tessera::Pipeline& machine, const Rasteriser& rasteriser, con
                   {input(tests.normal_test.input), pipeline_plan(normal_test, 1, t.read_latency(t.normal_map))},
                   {input(tests.view_test.input), pipeline_plan(t.view_test)},
                   input(*tests.view_test.from_transform),
-                  {input(tests.collect_tests->from_normal_test), input(tests.collect_tests->from_tex_coord_test),
-                   input(tests.collect_tests->from_summed_height_test), input(tests.collect_tests->from_view_test)},
+                  {input(collect.from_normal_test), input(collect.from_tex_coord_test),
+                   input(collect.from_summed_height_test), input(collect.from_view_test)},
                   input(join.from_tessellation_tests[0])};
     plan.join_triangles = input(join.from_get_triangle);
     plan.join_parts = input(join.from_transform);
     plan.join_places = t.pass_or_tessellate.buffer;
     plan.join = pipeline_plan(t.pass_or_tessellate);
-    plan.tessellation_input = input(machine.triangle_tessellation->from_pass_or_tessellate);
+    plan.tessellation_input = input(machine.netlist().the<Tessellation>().from_pass_or_tessellate);
     plan.tessellation = pipeline_plan(t.tessellation);
     plan.lighting = {input(machine.lighting.from_pass_or_tessellate), pipeline_plan(t.lighting)};
     plan.rasteriser = input(rasteriser.from_lighting);

@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "modules/units/pass_or_tessellate.h"
 #include "testbench/common/child_process.h"
 #include "testbench/common/hash.h"
 #include "testbench/machine/simulation.h"
@@ -63,7 +64,7 @@ Units units_of(Pipeline& machine) {
     units[schedule::height_test] = &tests.height_test;
     units[schedule::normal_test] = &tests.normal_test;
     units[schedule::view_test] = &tests.view_test;
-    units[schedule::collect_tests] = tests.collect_tests;
+    units[schedule::collect_tests] = &tests.collector;
     return units;
 }
 
@@ -124,10 +125,10 @@ class ClockedText {
             if (memory != nullptr)
                 text += memory_line(*memory, memory->transactions(), memory->slots_taken(), memory->cycles_held_up(),
                                     memory->occupied_cycles());
-        text += parts_line(p.get_triangle.parts_sent(), p.triangle_pass_or_tessellate->from_transform.taken(),
+        const auto& join = p.netlist().the<PassOrTessellate>();
+        text += parts_line(p.get_triangle.parts_sent(), join.from_transform.taken(),
                            p.tessellation_tests[0].view_test.from_transform->taken(),
-                           p.triangle_pass_or_tessellate->from_tessellation_tests[0].taken(),
-                           p.triangle_pass_or_tessellate->most_ahead_of_parts());
+                           join.from_tessellation_tests[0].taken(), p.most_ahead_of_parts());
         return text + levels_line(p.triangle_queue.high_water_mark(), p.triangle_queue.history());
     }
 

@@ -81,7 +81,7 @@ class HandMadeRun {
             edge.found.tests = static_cast<std::uint8_t>(bits);
             edge.found.evaluated = datapath::all_tests;
             sc_core::sc_time delay;
-            simulation.pipeline.tessellation_tests[0].collect_tests->to_pass_or_tessellate.transport(edge, delay);
+            simulation.pipeline.tessellation_tests[0].collector.tested_edges().transport(edge, delay);
         }
     }
     void fetch_normals(bool turned_away) {

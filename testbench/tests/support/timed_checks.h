@@ -102,7 +102,7 @@ inline void require_conservation(const Simulation& simulation) {
 inline void require_timed_conservation(const Simulation& simulation, const HostedMachine& machine) {
     const Pipeline& p = machine.pipeline;
     const auto& made = p.tessellation.made_into();
-    const std::uint64_t untested = p.family_tessellation != nullptr ? p.get_triangle.host_triangles() : 0;
+    const std::uint64_t untested = simulation.setup.design.work == Work::family ? p.get_triangle.host_triangles() : 0;
     CHECK(p.tessellation.activity().items_in() == untested + made[1] + made[2] + made[3] + made[4]);
     const Decisions::Evaluated& evaluated = machine.decisions.evaluated();
     const datapath::Registers& registers = simulation.setup.registers;

@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "modules/units/pass_or_tessellate.h"
 #include "testbench/check/transport/conservation.h"
 #include "testbench/tests/support/edited_mesh.h"
 #include "testbench/tests/support/job_settings.h"
@@ -231,7 +232,7 @@ TEST_CASE("conservation: an extra item in a unit breaks its equation and no othe
         {&p.get_triangle, "triangles in get_triangle = taken by it"},
         {&p.pass_or_tessellate, "triangles in pass_or_tessellate = taken by get_triangle"},
         {&tests.view_test, "edges in view_test = edges"},
-        {tests.collect_tests, "edges collected = edges"},
+        {&tests.collector, "edges collected = edges"},
     };
     for (Unit* unit : p.units()) {
         const std::string name = std::string(unit->name()).substr(std::string("tessera.").size());
@@ -257,7 +258,7 @@ TEST_CASE("conservation: an extra item on a stream breaks its equations") {
                   {{stream("tessellation_tests_0.view_test.from_transform", "transform.to_view_test_0"), {1, 0}},
                    {"vertices taken by view_test = vertices, once per unit", {1, 0}}});
     expect_change("collect_tests to pass_or_tessellate", simulation,
-                  [&] { offer(p.tessellation_tests[0].collect_tests->to_pass_or_tessellate, edge); },
+                  [&] { offer(p.tessellation_tests[0].collector.tested_edges(), edge); },
                   {{stream("pass_or_tessellate.from_tessellation_tests_0",
                            "tessellation_tests_0.collect_tests.to_pass_or_tessellate"),
                     {1, 0}}});
@@ -267,7 +268,7 @@ TEST_CASE("conservation: an extra item on a stream breaks its equations") {
     expect_change("a triangle that is emitted twice", simulation,
                   [&] { simulation.monitor.mesh.triangles.push_back({}); }, {{"finished = emitted", {0, 1}}});
     expect_change("tessellation to triangle_queue", simulation,
-                  [&] { give(p.triangle_tessellation->to_triangle_queue, taken.triangle); },
+                  [&] { give(p.netlist().the<Tessellation>().to_triangle_queue, taken.triangle); },
                   {{"children of tessellation = taken by triangle_queue", {0, 1}},
                    {"taken by triangle_queue = by get_triangle from it", {1, 0}}});
 }
@@ -385,7 +386,7 @@ TEST_CASE("conservation: an extra transformed vertex and extra decided triangles
                           edge.found.evaluated = datapath::all_tests;
                           if (part == 6)
                               edge.found.tests = datapath::normal_bit | datapath::gating_tests;
-                          give(p.tessellation_tests[0].collect_tests->to_pass_or_tessellate, edge);
+                          give(p.tessellation_tests[0].collector.tested_edges(), edge);
                       }
                   },
                   {{"triangles taken by get_triangle = decided", {0, 1}},
@@ -408,7 +409,7 @@ TEST_CASE("conservation: an extra transformed vertex and extra decided triangles
     DecidedTriangle untested;
     untested.pass.triangle.finished = true;
     expect_change("a finished triangle that goes round for normals", simulation,
-                  [&] { give(p.triangle_pass_or_tessellate->to_tessellation, untested); },
+                  [&] { give(p.netlist().the<PassOrTessellate>().to_tessellation, untested); },
                   {{"children of tessellation = taken by triangle_queue", {1, 1}},
                    {"taken by triangle_queue = by get_triangle from it", {1, 0}},
                    {"triangles cut by tessellation + finished = decided", {1, 0}},

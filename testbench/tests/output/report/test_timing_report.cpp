@@ -57,7 +57,7 @@ TEST_CASE("timing tables: each column of a unit has its figure") {
     a.item_out(110);
     a.set(0, State::waiting_for_memory, &m.pipeline.normal_map);
     a.set(40, State::busy);
-    a.set(110, State::blocked, m.tests.collect_tests);
+    a.set(110, State::blocked, &m.tests.collector);
     a.set(310, State::starved, &m.pipeline.transform);
     a.set(410, State::starved);
     a.finish(cycles);
@@ -99,7 +99,7 @@ TEST_CASE("timing tables: queues and joins have a rate and a level, and no state
         queue.item_out(500);
     queue.set(0, State::blocked, &m.pipeline.get_triangle);
     queue.finish(cycles);
-    work_on(*m.tests.collect_tests, 20);
+    work_on(m.tests.collector, 20);
     const std::string text = timing_tables(m.pipeline, cycles);
     CHECK_THAT(text,
                EndsWith("queue or join                                items  items/kcyc  mean level      most\n"
