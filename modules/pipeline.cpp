@@ -225,7 +225,7 @@ void Pipeline::see_whether_drained() {
 void Pipeline::list_units() {
     const auto place = [this](const Unit* unit) {
         return std::find_if(all_units.begin(), all_units.end(), [&](const UnitSpec& spec) {
-            return unit->get_parent_object() != this ? spec.per != Per::machine
+            return unit->get_parent_object() != this ? spec.in_tests()
                                                      : unit->basename() == std::string_view(spec.name);
         });
     };

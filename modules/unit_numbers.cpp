@@ -35,11 +35,11 @@ std::vector<UnitNumbers::Entry> number_units() {
         for (const UnitSpec& unit : all_units)
             if (unit.name == std::string(height_test_unit) && lane == 0)
                 add_height(tests, "", numbered(unit.name, tests_unit), &datapath::HeightTestFunctions::unit);
-            else if (unit.per == Per::lane || (unit.per == Per::tests_unit && lane == 0))
+            else if (unit.place == Place::lane || (unit.place == Place::tests_unit && lane == 0))
                 add(tests + numbered(unit.name, lane), numbered(unit.name, tests_unit + lane));
     };
     for (const UnitSpec& unit : all_units)
-        if (unit.per == Per::machine)
+        if (!unit.in_tests())
             add(unit.name, unit.name);
     for (unsigned k = 0; k < most_tests_units; ++k)
         add_tests(k, 0);

@@ -4,11 +4,12 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "modules/timing/design_options.h"
 #include "modules/timing/timing.h"
 
-// What is known of each unit and of each table's memory besides its code. Keys, the table of units in modules/README.md,
-// the numbers in waveforms and the random designs are derived from these lists. Includes no
-// SystemC: job files, fuzzers and the host's libraries are built without it.
+// What is known of each unit (TESSERA_FOR_EACH_UNIT) and of each table's memory besides its code. Keys, the table of units in
+// modules/README.md, the order of reports, the numbers in waveforms and the random designs are derived from these lists.
+// Includes no SystemC: job files, fuzzers and the host's libraries are built without it.
 
 namespace tessera {
 
@@ -21,79 +22,35 @@ struct UnitParameter {
     const char* meaning = "";
 };
 
-/// How many there are of a unit: one in a machine, in each Tessellation Tests unit, or in each of its lanes.
-enum class Per { machine, tests_unit, lane };
+/// Where a unit is: one in a machine; one of those that make a triangle's parts, between Get Triangle and the unit that
+/// joins them; one in each Tessellation Tests unit, or in each of its lanes.
+enum class Place { machine, geometry, tests_unit, lane };
+
+inline constexpr const char* input_capacity = "capacity of its input buffer";
 
 struct UnitSpec {
-    const char* name;   ///< of its module; of its keys, the first part
-    const char* title;  ///< as in the paper's figures
-    const char* work;   ///< columns of README's table
+    const char* name;            ///< of its module; of its keys, the first part
+    UnitTiming Timing::*timing;  ///< null: wires
+    const char* title;           ///< as in the paper's figures
+    const char* work;            ///< columns of README's table
     const char* arithmetic;
-    UnitTiming Timing::*timing = nullptr;  ///< null: wires
-    Per per = Per::machine;
-    bool reads_tables = false;                            ///< its latency does not include the reads
-    const char* buffer = "capacity of its input buffer";  ///< meaning of its key
+    Place place = Place::machine;
+    bool reads_tables = false;            ///< its latency does not include the reads
+    const char* buffer = input_capacity;  ///< meaning of its key
     UnitParameter further{};
+    unsigned DesignOptions::*pipelines = nullptr;  ///< null: one
+
+    constexpr bool in_tests() const { return place == Place::tests_unit || place == Place::lane; }
 };
 
 /// The unit that has the name of the design's height test, and its arithmetic (datapath/height_test.h).
 inline constexpr const char* height_test_unit = "height_test";
 
-/// In the order of the paper's figures; after a unit those that replace it.
-inline constexpr std::array<UnitSpec, 15> all_units = {{
-    {"get_triangle", "Get Triangle",
-     "takes a triangle from the queue, else from the host; sends its new parts down both branches, and the triangle itself "
-     "to Pass or Tessellate",
-     "-", &Timing::get_triangle},
-    {"calculate_new_p", "Calculate New P", "midpoints of position, texture coordinate and normal", "add, shift",
-     &Timing::calculate_new_p},
-    {"displace_vertex", "Displace Vertex", "normalises, reads d, P' = P + (S d + bias) N",
-     "multiply-accumulate, normalise", &Timing::displace_vertex, Per::machine, true},
-    {"transform", "Transform", "P' to the screen, N' to view space", "existing unit", &Timing::transform},
-    {"calculate_new_u", "Calculate New U", "t_ij", "add, shift", &Timing::calculate_new_u, Per::lane},
-    {"tex_coord_test", "Tex Coord Test", "compares integer parts; includes the Generation Test", "compare",
-     &Timing::tex_coord_test, Per::lane},
-    {height_test_unit, "Height test", "", "", &Timing::height_test, Per::tests_unit, true},
-    {"normal_test",
-     "Normal Test",
-     "N_ij, T_ij, N'_ij, six differences; includes the Highlight Test",
-     "normalise, bump, compare",
-     &Timing::normal_test,
-     Per::lane,
-     true,
-     "capacity of its input buffer",
-     {"highlight_test_latency", &Timing::highlight_test_latency, "cycles", 0, most_cycles,
-      "Highlight Test, if present: added to the Normal Test's latency"}},
-    {"view_test", "View Test", "Manhattan length; for a base triangle it waits for Transform", "add, compare",
-     &Timing::view_test, Per::lane},
-    {"collect_tests",
-     "Collect Tests",
-     "joins an edge's four results into one item",
-     "wires",
-     nullptr,
-     Per::tests_unit,
-     false,
-     "",
-     {"results_buffer", &Timing::results_buffer, "edges", 1, most_places,
-      "Capacity of each input buffer of Collect Tests: results of one test that wait for the other three"}},
-    {"sequence_tests",
-     "Sequence Tests",
-     "replaces it with `test_order = \"cheap_first\"`: sends an edge to the tests that its decision needs",
-     "logic",
-     nullptr,
-     Per::tests_unit,
-     false,
-     "",
-     {"edges_in_sequence", &Timing::edges_in_sequence, "edges", 1, most_places,
-      "With hardware.test_order = \"cheap_first\": capacity of Sequence Tests, in edges whose cheap tests are done"}},
-    {"pass_or_tessellate", "Pass or Tessellate", "joins both branches; decides, culls, forwards", "logic",
-     &Timing::pass_or_tessellate, Per::machine, false, "triangles that wait for parts from either branch"},
-    {"tessellation", "Tessellation", "2, 3 or 4 children; sends a finished base triangle back unsplit", "wiring",
-     &Timing::tessellation},
-    {"triangle_queue", "Triangle Queue", "waiting triangles: first or last in first out, on chip, spilling off chip",
-     "memory", &Timing::triangle_queue},
-    {"lighting", "Lighting", "per-vertex light", "existing unit", &Timing::lighting},
-}};
+#define TESSERA_UNIT(name, latency, interval, buffer, ...) UnitSpec{#name, &Timing::name, __VA_ARGS__},
+#define TESSERA_WIRES(name, ...) UnitSpec{#name, nullptr, __VA_ARGS__},
+inline constexpr std::array all_units{TESSERA_FOR_EACH_UNIT(TESSERA_UNIT, TESSERA_WIRES)};
+#undef TESSERA_UNIT
+#undef TESSERA_WIRES
 
 struct MemorySpec {
     const char* name;  ///< of its module; of its keys, the first part

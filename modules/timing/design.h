@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "modules/datapath/parameters.h"
+#include "modules/timing/all_units.h"
 #include "modules/timing/cycle_scheduler.h"
 #include "modules/timing/design_options.h"
 #include "modules/timing/height_test_timing.h"
@@ -56,10 +57,16 @@ constexpr unsigned displace_vertex_latency(const Design& design) {
 /// and one for each place in the units between; 33 by default. Pass or Tessellate has room for that many to wait for
 /// their parts.
 constexpr unsigned triangles_ahead_of_parts(const Design& design) {
-    const Timing& t = design.timing;
-    return 1 + t.calculate_new_p.buffer + register_stages(t.calculate_new_p) + t.displace_vertex.buffer +
-           register_stages(t.displace_vertex, 1, displace_vertex_latency(design)) + t.transform.buffer +
-           register_stages(t.transform, design.transform_pipelines) + 1;
+    unsigned triangles = 1 + 1;
+    for (const UnitSpec& unit : all_units) {
+        if (unit.place != Place::geometry)
+            continue;
+        const UnitTiming& its = design.timing.*unit.timing;
+        const unsigned pipelines = unit.pipelines == nullptr ? 1 : design.*unit.pipelines;
+        triangles +=
+            its.buffer + register_stages(its, pipelines, unit.reads_tables ? displace_vertex_latency(design) : 0);
+    }
+    return triangles;
 }
 
 /// Width of a triangle's tag: enough to distinguish all triangles between Get Triangle and Pass or Tessellate: those

@@ -51,26 +51,42 @@ struct OffChipTiming {
     constexpr std::uint64_t cycles(std::uint64_t bytes) const { return (bytes + bandwidth - 1) / bandwidth; }
 };
 
+/// Every unit in the order of the paper's figures, after a unit those that replace it: of one with a timing its name, the
+/// defaults of its latency, interval and buffer, and the rest of its UnitSpec (all_units.h); of wires the name and the
+/// rest. Latencies: for Displace Vertex those of a normalise and a multiply-accumulate, for the Normal Test of two normalises,
+/// a bump and a compare; tables' reads come on top. Height test: 0 is the test's own. Pass or Tessellate's buffer:
+/// triangles that are not complete.
+// clang-format off
+#define TESSERA_FOR_EACH_UNIT(UNIT, WIRES) \
+    UNIT(get_triangle, 1, 1, 1, "Get Triangle", "takes a triangle from the queue, else from the host; sends its new parts down both branches, and the triangle itself to Pass or Tessellate", "-") \
+    UNIT(calculate_new_p, 1, 1, 1, "Calculate New P", "midpoints of position, texture coordinate and normal", "add, shift", Place::geometry) \
+    UNIT(displace_vertex, 6, 1, 1, "Displace Vertex", "normalises, reads d, P' = P + (S d + bias) N", "multiply-accumulate, normalise", Place::geometry, true) \
+    UNIT(transform, 20, 1, 1, "Transform", "P' to the screen, N' to view space", "existing unit", Place::geometry, false, input_capacity, {}, &DesignOptions::transform_pipelines) \
+    UNIT(calculate_new_u, 1, 1, 1, "Calculate New U", "t_ij", "add, shift", Place::lane) \
+    UNIT(tex_coord_test, 1, 1, 1, "Tex Coord Test", "compares integer parts; includes the Generation Test", "compare", Place::lane) \
+    UNIT(height_test, 0, 1, 1, "Height test", "", "", Place::tests_unit, true) \
+    UNIT(normal_test, 9, 1, 1, "Normal Test", "N_ij, T_ij, N'_ij, six differences; includes the Highlight Test", "normalise, bump, compare", Place::lane, true, input_capacity, {"highlight_test_latency", &Timing::highlight_test_latency, "cycles", 0, most_cycles, "Highlight Test, if present: added to the Normal Test's latency"}) \
+    UNIT(view_test, 1, 1, 1, "View Test", "Manhattan length; for a base triangle it waits for Transform", "add, compare", Place::lane) \
+    WIRES(collect_tests, "Collect Tests", "joins an edge's four results into one item", "wires", Place::tests_unit, false, "", {"results_buffer", &Timing::results_buffer, "edges", 1, most_places, "Capacity of each input buffer of Collect Tests: results of one test that wait for the other three"}) \
+    WIRES(sequence_tests, "Sequence Tests", "replaces it with `test_order = \"cheap_first\"`: sends an edge to the tests that its decision needs", "logic", Place::tests_unit, false, "", {"edges_in_sequence", &Timing::edges_in_sequence, "edges", 1, most_places, "With hardware.test_order = \"cheap_first\": capacity of Sequence Tests, in edges whose cheap tests are done"}) \
+    UNIT(pass_or_tessellate, 1, 1, 8, "Pass or Tessellate", "joins both branches; decides, culls, forwards", "logic", Place::machine, false, "triangles that wait for parts from either branch") \
+    UNIT(tessellation, 1, 1, 1, "Tessellation", "2, 3 or 4 children; sends a finished base triangle back unsplit", "wiring") \
+    UNIT(triangle_queue, 1, 1, 1, "Triangle Queue", "waiting triangles: first or last in first out, on chip, spilling off chip", "memory") \
+    UNIT(lighting, 4, 1, 1, "Lighting", "per-vertex light", "existing unit")
+// clang-format on
+
 /// Clock period and the datasheet figures of every unit and memory. Defaults follow the paper where it states them
 /// (one port on the Summed Height Table: four cycles per rectangle; tests one edge after another). Declared only here;
 /// configuration and reports refer to them.
 struct Timing {
     unsigned cycle_picoseconds = 5000;  ///< the clock's period
-    UnitTiming get_triangle{1, 1, 1};
-    UnitTiming calculate_new_p{1, 1, 1};
-    UnitTiming displace_vertex{6, 1, 1};  ///< normalise and multiply-accumulate; the map read comes on top
-    UnitTiming transform{20, 1, 1};
-    UnitTiming calculate_new_u{1, 1, 1};
-    UnitTiming tex_coord_test{1, 1, 1};
-    UnitTiming height_test{0, 1, 1};      ///< latency 0: the test's own; the table reads come on top
-    UnitTiming normal_test{9, 1, 1};      ///< normalise, bump, normalise, compare; the map read comes on top
+#define TESSERA_TIMING(name, latency, interval, buffer, ...) UnitTiming name{latency, interval, buffer};
+#define TESSERA_NO_TIMING(...)
+    TESSERA_FOR_EACH_UNIT(TESSERA_TIMING, TESSERA_NO_TIMING)
+#undef TESSERA_TIMING
+#undef TESSERA_NO_TIMING
     unsigned highlight_test_latency = 1;  ///< N'.H: on top of the Normal Test's, in a design with a Highlight Test
-    UnitTiming view_test{1, 1, 1};
-    UnitTiming pass_or_tessellate{1, 1, 8};  ///< buffer: triangles that are not complete
-    UnitTiming tessellation{1, 1, 1};
-    UnitTiming triangle_queue{1, 1, 1};
-    UnitTiming lighting{4, 1, 1};
-    unsigned results_buffer = 4;  ///< results of a test that wait for the other tests of their edge
+    unsigned results_buffer = 4;          ///< results of a test that wait for the other tests of their edge
     unsigned edges_in_sequence =
         32;  ///< tests cheapest first: edges between their cheap tests' results and their departure
     MemoryTiming displacement_map;
