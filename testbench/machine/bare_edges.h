@@ -53,23 +53,31 @@ class BareEdges {
         return bump(n, tangent, handedness, datapath::map_normal(t, entries.data(), formats()), formats(), saturations);
     }
 
-    /// Calculates the vertex to be inserted on edge k.
-    void insert_vertex(datapath::TrianglePass& pass, int k) {
+    /// Calculates what the tests need of edge k's midpoint: t, N, T and N'.
+    void find_midpoint(datapath::TrianglePass& pass, int k) {
         const datapath::Vertex &i = pass.edge_begin(k), &j = pass.edge_end(k);
-        datapath::NewVertex& made = pass.new_vertex[static_cast<std::size_t>(k)];
         datapath::EdgeTests& edge = pass.edges[static_cast<std::size_t>(k)];
-        made.position = midpoint(i.position, j.position);
-        made.texture = edge.texture = midpoint(i.texture, j.texture);  // both branches calculate it
-        made.mean_normal = midpoint(i.normal, j.normal);
-        edge.normal = normalise(made.mean_normal, formats(), saturations);
+        edge.texture = midpoint(i.texture, j.texture);
+        edge.normal = normalise(midpoint(i.normal, j.normal), formats(), saturations);
         edge.tangent = normalise(midpoint(i.tangent, j.tangent), formats(), saturations);
-        made.displaced = displaced(made.position, edge.normal, made.texture);
-        made.screen = transform(made.displaced, r().transform, formats(), saturations);
         edge.displaced_normal =
-            bumped(edge.normal, edge.tangent, datapath::inserted_handedness(i.handedness, j.handedness), made.texture);
+            bumped(edge.normal, edge.tangent, datapath::inserted_handedness(i.handedness, j.handedness), edge.texture);
     }
 
-    /// Evaluates every test of edge k, whose vertex is known, and sets its bit of pass.split if they ask for a split.
+    /// Calculates the vertex to be inserted on edge k.
+    void insert_vertex(datapath::TrianglePass& pass, int k) {
+        find_midpoint(pass, k);
+        const datapath::Vertex &i = pass.edge_begin(k), &j = pass.edge_end(k);
+        const datapath::EdgeTests& edge = pass.edges[static_cast<std::size_t>(k)];
+        datapath::NewVertex& made = pass.new_vertex[static_cast<std::size_t>(k)];
+        made.position = midpoint(i.position, j.position);
+        made.texture = edge.texture;  // both branches calculate it
+        made.mean_normal = midpoint(i.normal, j.normal);
+        made.displaced = displaced(made.position, edge.normal, made.texture);
+        made.screen = transform(made.displaced, r().transform, formats(), saturations);
+    }
+
+    /// Evaluates every test of edge k, whose midpoint is known, and sets its bit of pass.split if they ask for a split.
     void decide(datapath::TrianglePass& pass, int k) const {
         const datapath::Vertex &i = pass.edge_begin(k), &j = pass.edge_end(k);
         const datapath::TestParameters& on = r().tests;
@@ -103,16 +111,20 @@ class BareEdges {
         decide(pass, k);
     }
 
-    /// Evaluates all edges, the edges to split, and the tests that kept edges whole (Triangle::stopped_by).
+    /// Evaluates all edges.
     void evaluate(datapath::TrianglePass& pass) {
-        unsigned stopped_by = 0;
         pass.split = 0;
-        for (int k = 0; k < 3; ++k) {
+        for (int k = 0; k < 3; ++k)
             evaluate_edge(pass, k);
-            const std::uint8_t tests = pass.edges[static_cast<std::size_t>(k)].tests;
-            if ((tests & datapath::requesting_tests) != 0)
-                stopped_by |= ~tests & datapath::gating_tests;
-        }
+        conclude(pass);
+    }
+
+    /// Once all edges are decided: the edges to split, and the tests that kept edges whole (Triangle::stopped_by).
+    void conclude(datapath::TrianglePass& pass) const {
+        unsigned stopped_by = 0;
+        for (const datapath::EdgeTests& edge : pass.edges)
+            if ((edge.tests & datapath::requesting_tests) != 0)
+                stopped_by |= ~edge.tests & datapath::gating_tests;
         pass.triangle.stopped_by = static_cast<std::uint8_t>(pass.split == 0 ? stopped_by : 0);
         pass.split = static_cast<std::uint8_t>(edges_to_split(pass.split, r().triangulation, pass));
     }

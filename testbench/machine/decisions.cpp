@@ -73,10 +73,10 @@ void Decisions::write(const datapath::TrianglePass& pass) {
         count(pass);
         return;
     }
-    datapath::TrianglePass all;
-    all.triangle = pass.triangle;
-    bare_->evaluate(all);
+    datapath::TrianglePass all = pass;
+    evaluate(all);
     count(all);
+    stopped_by(pass.triangle) = all.triangle.stopped_by;
     unsigned split_by = 0;
     for (unsigned k = 0; k < 3; ++k) {
         const std::uint8_t tests = all.edges[k].tests;
@@ -90,15 +90,36 @@ void Decisions::write(const datapath::TrianglePass& pass) {
     split_by_[pass.number] = static_cast<std::uint8_t>(split_by);
 }
 
-void Decisions::complete_tags(const datapath::Triangle& finished, EmittedTriangle& emitted) const {
+/// Evaluates the tests that the machine has not evaluated.
+void Decisions::evaluate(datapath::TrianglePass& pass) {
+    pass.split = 0;
+    for (int k = 0; k < 3; ++k) {
+        const datapath::EdgeTests& edge = pass.edges[static_cast<std::size_t>(k)];
+        if ((edge.evaluated & datapath::normal_bit) == 0)
+            bare_->find_midpoint(pass, k);
+        if (edge.evaluated != datapath::all_tests)
+            bare_->decide(pass, k);
+        else if (datapath::split_decision(edge.tests))
+            pass.split = static_cast<std::uint8_t>(pass.split | 1u << k);
+    }
+    bare_->conclude(pass);
+}
+
+/// A triangle without split edges is finished as soon as it is decided, a base triangle perhaps a pass later.
+std::uint8_t& Decisions::stopped_by(const datapath::Triangle& triangle) {
+    const bool is_base = triangle.split_by == 0;
+    const std::size_t place = is_base ? std::size_t{triangle.base} + 1 : 0;
+    if (place >= stopped_by_.size())
+        stopped_by_.resize(place + 1);
+    return stopped_by_[place];
+}
+
+void Decisions::complete_tags(const datapath::Triangle& finished, EmittedTriangle& emitted) {
     if (!bare_)
         return;
     if (finished.split_by != 0 && finished.parent < split_by_.size())
         emitted.split_by = split_by_[finished.parent];
-    datapath::TrianglePass all;
-    all.triangle = finished;
-    bare_->evaluate(all);
-    emitted.stopped_by = all.triangle.stopped_by;
+    emitted.stopped_by = stopped_by(finished);
 }
 
 }  // namespace tessera

@@ -49,21 +49,24 @@ class Decisions : public tlm::tlm_analysis_if<datapath::TrianglePass> {
     const Counts& counts() const { return counts_; }
     const Evaluated& evaluated() const { return evaluated_; }
 
-    /// Completes split_by and stopped_by of an emitted triangle.
-    void complete_tags(const datapath::Triangle& finished, EmittedTriangle& emitted) const;
+    /// Completes split_by and stopped_by of an emitted triangle, whose last pass has been decided.
+    void complete_tags(const datapath::Triangle& finished, EmittedTriangle& emitted);
 
   private:
     void count(const datapath::TrianglePass& pass);
     void count(std::uint8_t tests);
     void count_reads(const datapath::TrianglePass& pass, int edge);
+    void evaluate(datapath::TrianglePass& pass);
+    std::uint8_t& stopped_by(const datapath::Triangle& triangle);
 
     const datapath::Registers& registers_;
     const datapath::HeightTestFunctions& height_test_;
-    const bool reads_vary_;                      // some edges read the displacement map, or nothing
-    mutable std::optional<BareRecursion> bare_;  // absent if the machine evaluates every test of every edge
-    std::vector<std::uint8_t> split_by_;         // of each pass that split its triangle, by number
+    const bool reads_vary_;               // some edges read the displacement map, or nothing
+    std::optional<BareRecursion> bare_;   // absent if the machine evaluates every test of every edge
+    std::vector<std::uint8_t> split_by_;  // of each pass that split its triangle, by number
     Counts counts_;
     Evaluated evaluated_;
+    std::vector<std::uint8_t> stopped_by_;  // of the triangle decided last, and of each base triangle
 };
 
 }  // namespace tessera

@@ -23,7 +23,7 @@ class MeshMonitor : public sc_core::sc_object,
     void write(const datapath::Triangle& triangle) override { record(triangle, nullptr); }
 
     /// decisions: of the triangle's machine, for its tags; null: the machine's own tags are complete.
-    void record(const datapath::Triangle& triangle, const Decisions* decisions) {
+    void record(const datapath::Triangle& triangle, Decisions* decisions) {
         if (mesh.triangles.size() == limit_) {
             stop();
             return;
