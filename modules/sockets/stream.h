@@ -18,8 +18,8 @@ namespace tessera {
 /// second BEGIN_REQ before END_REQ. The payload stays unchanged until END_REQ; the consumer copies it. (Decision: the
 /// fewest phases that model exclusion and back-pressure; a memory's BEGIN_RESP adds latency. Both ends check each other
 /// in every build, for two compares.)
-/// An output bound to a StreamInput with nothing in between calls `offer` instead of nb_transport_fw: the same rules,
-/// without TLM's arguments.
+/// An output bound to a StreamInput with nothing in between calls `transport` and `offer` instead of b_transport and
+/// nb_transport_fw: the same rules, without TLM's interfaces and arguments.
 template <class Payload>
 struct Stream {
     using tlm_payload_type = Payload;

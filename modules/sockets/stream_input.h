@@ -71,6 +71,9 @@ class StreamInput final : public tlm::tlm_target_socket<32, Stream<Payload>>,
             admit();
     }
 
+    /// b_transport without TLM.
+    void transport(Payload& payload, sc_core::sc_time& delay) { serve_(server_, payload, delay); }
+
     /// BEGIN_REQ without TLM, this many cycles from now. Returns true if the item is accepted at once.
     bool offer(Payload& payload, std::uint64_t cycles = 0) {
         if (!pending_.empty())
@@ -121,7 +124,7 @@ class StreamInput final : public tlm::tlm_target_socket<32, Stream<Payload>>,
         return tlm::TLM_UPDATED;
     }
 
-    void b_transport(Payload& payload, sc_core::sc_time& delay) override { serve_(server_, payload, delay); }
+    void b_transport(Payload& payload, sc_core::sc_time& delay) override { transport(payload, delay); }
     bool get_direct_mem_ptr(Payload&, tlm::tlm_dmi&) override { return false; }
     unsigned transport_dbg(Payload&) override { return 0; }
 

@@ -57,11 +57,11 @@ class StreamOutput : public tlm::tlm_initiator_socket<32, Stream<Payload>>,
     /// Functional mode: sends an item; on return everything downstream has finished.
     void transport(Payload& payload, sc_core::sc_time& delay) {
         if (wires_.formats == nullptr) {
-            (*this)->b_transport(payload, delay);
+            pass_on(payload, delay);
             return;
         }
         Payload packed = through_wires(payload);
-        (*this)->b_transport(packed, delay);
+        pass_on(packed, delay);
     }
 
     /// Timed mode: items offered so far.
@@ -103,6 +103,13 @@ class StreamOutput : public tlm::tlm_initiator_socket<32, Stream<Payload>>,
         const datapath::Formats* formats = nullptr;
         int tag_bits = 0;
     };
+
+    void pass_on(Payload& payload, sc_core::sc_time& delay) {
+        if (direct_)
+            input_->transport(payload, delay);
+        else
+            (*this)->b_transport(payload, delay);
+    }
 
     bool offer_by_tlm(Payload& payload) {
         tlm::tlm_phase phase = tlm::BEGIN_REQ;

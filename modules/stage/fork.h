@@ -57,6 +57,8 @@ class Fork {
 
     /// Functional mode: all outputs start at the same time; on return `delay` is that of the last to finish.
     void transport(Item& item, sc_core::sc_time& delay) {
+        if (only_output_ != nullptr)
+            return only_output_->transport(item, delay);
         const sc_core::sc_time start = delay;
         for (std::size_t k = 0; k < count_; ++k) {
             if (!is_for(k, item))
