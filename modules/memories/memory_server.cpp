@@ -119,6 +119,8 @@ unsigned MemoryServer::move(Storage& storage, MemoryRequest& request) {
     // Copies: to the compiler the entries' bytes could be those of the request.
     const unsigned count = request.count, entry_bytes = request.entry_bytes;
     unsigned char* entry = request.data;
+    if (!writes && storage.read_entries(request.address.data(), count, entry_bytes, entry))
+        return count * entry_bytes;
     for (unsigned k = 0; k < count; ++k, entry += entry_bytes) {
         const std::uint64_t address = request.address[k];
         if (!storage.covers(address, entry_bytes))

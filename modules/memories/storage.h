@@ -17,11 +17,22 @@ class Storage {
         return length <= size_ && address - base_ <= size_ - length;
     }
 
+    /// Reads table entries, each from its address, one after another to `to`: the common sizes without a call of memcpy.
+    /// Returns false, having read some, if they have another size or are not all allocated.
+    bool read_entries(const std::uint64_t* addresses, unsigned count, unsigned entry_bytes, unsigned char* to) const {
+        switch (entry_bytes) {
+            case 2: return read_entries<2>(addresses, count, to);
+            case 4: return read_entries<4>(addresses, count, to);
+            case 6: return read_entries<6>(addresses, count, to);
+            default: return false;
+        }
+    }
+
     /// Only covered addresses may be read or written.
     void read(std::uint64_t address, unsigned char* to, std::size_t length) const {
         const std::uint64_t first = address - base_;
         if (first + length <= bytes_.size()) {
-            copy(to, &bytes_[first], length);
+            std::copy_n(&bytes_[first], length, to);
             return;
         }
         const std::size_t written = first < bytes_.size() ? bytes_.size() - first : 0;
@@ -42,14 +53,19 @@ class Storage {
     }
 
   private:
-    /// Copies a table entry without a call of memcpy: 2, 4 or 6 bytes by default.
-    static void copy(unsigned char* to, const unsigned char* from, std::size_t length) {
-        switch (length) {
-            case 2: std::memcpy(to, from, 2); break;
-            case 4: std::memcpy(to, from, 4); break;
-            case 6: std::memcpy(to, from, 6); break;
-            default: std::memcpy(to, from, length);
+    template <std::size_t Bytes>
+    bool read_entries(const std::uint64_t* addresses, unsigned count, unsigned char* to) const {
+        if (bytes_.size() < Bytes)
+            return false;
+        const unsigned char* const bytes = bytes_.data();
+        const std::uint64_t base = base_, last = bytes_.size() - Bytes;
+        for (unsigned k = 0; k < count; ++k, to += Bytes) {
+            const std::uint64_t first = addresses[k] - base;
+            if (first > last)
+                return false;
+            std::memcpy(to, bytes + first, Bytes);
         }
+        return true;
     }
 
     std::uint64_t base_;
