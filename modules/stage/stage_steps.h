@@ -153,13 +153,15 @@ template <bool HasTables>
 void Stage<In, Out>::start(std::uint64_t cycle) {
     Machinery& m = *machinery_;
     typename Machinery::Slot& slot = m.pipeline.start(cycle);
-    slot.item = input_->front();
+    const In& item = input_->front();
+    if (HasTables || clock_.observed())  // waveforms show it
+        slot.item = item;
     activity_.item_in(cycle);
     if (HasTables) {
         slot.requests = slot.answered = 0;
         m.reads.clear();
         m.asked = m.asked_entries = 0;
-        reads(slot.item, m.reads);
+        reads(item, m.reads);
         slot.requests = static_cast<std::uint8_t>(m.reads.requests());
         // The first condition tells the compiler the bound that the second keeps.
         for (unsigned k = 0; k < Reads::most_requests && k < m.reads.requests(); ++k) {
@@ -170,7 +172,7 @@ void Stage<In, Out>::start(std::uint64_t cycle) {
     if (HasTables && slot.requests > 0)
         m.pipeline.finish(m.pipeline.size() - 1, never);
     else
-        slot.result = process(slot.item, m.entries);
+        slot.result = process(item, m.entries);
     input_->pop();
 }
 

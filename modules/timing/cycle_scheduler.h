@@ -184,6 +184,8 @@ class CycleScheduler : public sc_core::sc_module {
         observed_last_ = last;
         observer_began_ = false;
     }
+    /// True if there is an observer, from which cycle on it may observe.
+    bool observed() const { return observer_ != nullptr; }
     /// The process's bit in what an observer receives.
     static std::uint64_t bit_of(const CycleProcess& unit) { return unit.bit_; }
 
