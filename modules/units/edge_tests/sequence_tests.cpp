@@ -59,7 +59,7 @@ bool SequenceTests::take_edge(std::uint64_t cycle) {
     for (const PartTag& tag : {edge.height.tag, from_tex_coord_test.front().tag, from_view_test.front().tag})
         if (tag.triangle != edge.tested.tag.triangle || tag.part != edge.tested.tag.part)
             SC_REPORT_ERROR("tessera/sequence_tests", "the tests' results belong to different edges");
-    edge.next = after_cheap_tests(edge);
+    edge.next = after_cheap_tests(edge.tested, edge.normal, edge.height);
     normal_operands.pop();
     height_operands.pop();
     from_tex_coord_test.pop();

@@ -37,14 +37,15 @@ void SequencingUnit::add_input(const UnitContext& context, StreamInput<Item>& in
     input.clocked_by(context.clock, *this, context.timing().results_buffer, context.timing().stalls);
 }
 
-SequencingUnit::Next SequencingUnit::after_cheap_tests(const Edge& edge) const {
-    if (edge.normal.new_vertices != 0)
+SequencingUnit::Next SequencingUnit::after_cheap_tests(const TestedEdge& edge, const NormalOperands& normal,
+                                                       const HeightOperands& height) const {
+    if (normal.new_vertices != 0)
         return Next::normal_test;
-    if (!may_split(edge.tested))
+    if (!may_split(edge))
         return Next::leave;
     if (!height_first_)
         return Next::normal_test;
-    return has_rank(edge.height) ? Next::summed_height_test : without_rank();
+    return has_rank(height) ? Next::summed_height_test : without_rank();
 }
 
 /// Whether the Rank Test applies to the edge. This is known without reading its table.
@@ -109,7 +110,7 @@ void SequencingUnit::b_transport(Item& item, sc_core::sc_time& delay) {
 
 void SequencingUnit::run_tests(Edge& edge, sc_core::sc_time& delay) {
     in_test_.open(edge.tested.tag.triangle) = &edge.tested;
-    for (Next next = after_cheap_tests(edge); next != Next::leave;) {
+    for (Next next = after_cheap_tests(edge.tested, edge.normal, edge.height); next != Next::leave;) {
         if (next == Next::normal_test) {
             normal_test().transport(edge.normal, delay);
             next = after_normal_test(edge);

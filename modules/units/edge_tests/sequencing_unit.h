@@ -42,7 +42,7 @@ class SequencingUnit : public CollectingUnit {
 
     template <class Item>
     void add_input(const UnitContext& context, StreamInput<Item>& input);
-    Next after_cheap_tests(const Edge& edge) const;
+    Next after_cheap_tests(const TestedEdge& edge, const NormalOperands& normal, const HeightOperands& height) const;
     Next after_normal_test(const Edge& edge) const;
     Next after_height_test(const TestedEdge& edge) const;
 

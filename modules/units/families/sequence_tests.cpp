@@ -46,14 +46,17 @@ FamilySequenceTests::FamilySequenceTests(const sc_core::sc_module_name& name, co
     }
 }
 
+/// The edges that wait for a test.
+Ring<FamilySequenceTests::Edge>& FamilySequenceTests::waiting_for(Next next) {
+    return next == Next::normal_test ? for_normal_ : for_height_;
+}
+
 /// Moves an edge to where it waits next.
 void FamilySequenceTests::decided(const Edge& edge, Next next) {
-    if (next == Next::normal_test)
-        for_normal_.push(edge);
-    else if (next == Next::summed_height_test)
-        for_height_.push(edge);
-    else
+    if (next == Next::leave)
         leaving_.push(edge.tested);
+    else
+        waiting_for(next).push(edge);
 }
 
 /// Accepts an edge whose cheap tests have decided, one per cycle and lane.
@@ -64,22 +67,29 @@ bool FamilySequenceTests::take_edge(std::size_t lane, std::uint64_t cycle) {
         wake_at(lanes_[lane].next_in);
         return false;
     }
-    Edge edge;
-    edge.normal = normal_operands[lane].front();
-    edge.height = height_operands[lane].front();
-    edge.height.ends = from_view_test[lane].front().ends;
-    edge.tested.tag = edge.normal.tag;
-    add_result(edge.tested, from_tex_coord_test[lane].front());
-    add_result(edge.tested, from_view_test[lane].front());
-    for (const PartTag& tag :
-         {edge.height.tag, from_tex_coord_test[lane].front().tag, from_view_test[lane].front().tag})
-        if (!same_part(tag, edge.tested.tag))
+    const NormalOperands& normal = normal_operands[lane].front();
+    HeightOperands& height = height_operands[lane].front();
+    height.ends = from_view_test[lane].front().ends;
+    TestedEdge tested;
+    tested.tag = normal.tag;
+    add_result(tested, from_tex_coord_test[lane].front());
+    add_result(tested, from_view_test[lane].front());
+    for (const PartTag* tag : {&height.tag, &from_tex_coord_test[lane].front().tag, &from_view_test[lane].front().tag})
+        if (!same_part(*tag, tested.tag))
             SC_REPORT_ERROR("tessera/sequence_tests", "the tests' results belong to different edges");
+    const Next next = after_cheap_tests(tested, normal, height);
+    if (next == Next::leave) {
+        leaving_.push(tested);
+    } else {
+        Edge& edge = waiting_for(next).push();
+        edge.tested = tested;
+        edge.normal = normal;
+        edge.height = height;
+    }
     normal_operands[lane].pop();
     height_operands[lane].pop();
     from_tex_coord_test[lane].pop();
     from_view_test[lane].pop();
-    decided(edge, after_cheap_tests(edge));
     activity_.item_in(cycle);
     ++taken_;
     lanes_[lane].next_in = cycle + 1;

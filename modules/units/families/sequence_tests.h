@@ -59,6 +59,7 @@ class FamilySequenceTests : public SequencingUnit {
     StreamOutput<NormalOperands>& normal_test() override { return to_normal_test[0]; }
     void step() override;
     bool take_edge(std::size_t lane, std::uint64_t cycle);
+    Ring<Edge>& waiting_for(Next next);
     void decided(const Edge& edge, Next next);
     bool take_results();
     bool send_to_normal_test();
