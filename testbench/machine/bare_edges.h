@@ -138,9 +138,8 @@ class BareEdges {
     /// What the design's height test makes of an edge, on or off.
     datapath::HeightDecision test_heights(const datapath::HeightEdge& edge) const {
         const datapath::Registers& registers = r();
-        const datapath::HeightTestFunctions& test = functions_of(registers.formats.height_test);
         datapath::Reads reads;
-        test.reads(edge, registers, reads);
+        height_test_.reads(edge, registers, reads);
         datapath::Entries entries;  // NOLINT(cppcoreguidelines-pro-type-member-init): as many as are read
         const bool codes = reads.last_port() == 1;
         for (unsigned k = 0; k < reads.entries(); ++k) {
@@ -150,12 +149,16 @@ class BareEdges {
                                : scene().height_entry(address - registers.height_table.base);
         }
         datapath::HeightDecision decision;
-        test.decide(edge, entries, registers, decision);
+        height_test_.decide(edge, entries, registers, decision);
         return decision;
     }
 
     /// Counts so far. The machine normalises N_ij in two units and counts each; Lighting is not part of this.
     datapath::Saturations saturations;
+
+  protected:
+    /// height_test: the scene's, which must not change.
+    explicit BareEdges(datapath::HeightTest height_test) : height_test_(functions_of(height_test)) {}
 
   private:
     const Scene& scene() const { return static_cast<const Scene&>(*this); }
@@ -181,6 +184,8 @@ class BareEdges {
         if (highlight_test(i.displaced_normal, j.displaced_normal, edge.displaced_normal, tests))
             edge.tests |= datapath::highlight_bit;
     }
+
+    const datapath::HeightTestFunctions& height_test_;
 };
 
 }  // namespace tessera

@@ -10,7 +10,8 @@ using namespace datapath;  // this file consists of calls to the datapath
 
 template class BareEdges<BareRecursion>;
 
-BareRecursion::BareRecursion(const MachineSetup& setup) : setup_(setup) {
+BareRecursion::BareRecursion(const MachineSetup& setup)
+    : BareEdges(setup.registers.formats.height_test), setup_(setup) {
     const MapGeometry& map = setup.registers.map;
     const Formats& formats = setup.registers.formats;
     normals_.reserve(setup.map.codes.size());

@@ -46,7 +46,8 @@ inline Tables make_tables(datapath::Registers& registers, const std::vector<std:
 /// Edges of arbitrary registers and tables. Throws std::out_of_range if a read lies outside its table.
 class Machine : public BareEdges<Machine> {
   public:
-    Machine(datapath::Registers with, Tables tables) : registers(with), tables_(std::move(tables)) {}
+    Machine(const datapath::Registers& with, Tables tables)
+        : BareEdges(with.formats.height_test), registers(with), tables_(std::move(tables)) {}
 
     datapath::Registers registers;
 
