@@ -5,7 +5,7 @@
 namespace tessera::datapath {
 
 /// The table entries that an item needs: byte addresses, grouped in requests that are made one after another. Empty if
-/// the item needs no entries.
+/// the item needs no entries. What is added beyond the most is counted but not kept.
 class Reads {
   public:
     static constexpr unsigned most_requests = 3;
@@ -21,10 +21,17 @@ class Reads {
     }
     /// Adds a request for the 1 to 9 entries that are added next (a gather).
     void add_request() {
-        ports_[requests_] = static_cast<std::uint8_t>(port_);
-        first_[requests_++] = entries_;
+        if (requests_ < most_requests) {
+            ports_[requests_] = static_cast<std::uint8_t>(port_);
+            first_[requests_] = entries_;
+        }
+        ++requests_;
     }
-    void add_entry(std::uint64_t address) { address_[entries_++] = address; }
+    void add_entry(std::uint64_t address) {
+        if (entries_ < most_entries)
+            address_[entries_] = address;
+        ++entries_;
+    }
     void clear() { port_ = requests_ = entries_ = 0; }
 
     unsigned port(unsigned request) const { return ports_[request]; }

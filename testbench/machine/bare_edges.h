@@ -2,6 +2,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <stdexcept>
+#include <string>
 
 #include "modules/datapath/bilinear.h"
 #include "modules/datapath/bump.h"
@@ -135,18 +137,23 @@ class BareEdges {
         return {i.texture, j.texture, ij, false, 0, 0, edge_in_view(i.screen, j.screen)};
     }
 
-    /// What the design's height test makes of an edge, on or off.
+    /// What the design's height test makes of an edge, on or off. Throws std::logic_error if its reads are not as declared,
+    /// or lie outside the table.
     datapath::HeightDecision test_heights(const datapath::HeightEdge& edge) const {
         const datapath::Registers& registers = r();
         datapath::Reads reads;
         height_test_.reads(edge, registers, reads);
+        if (!height_test_.as_declared(reads, registers))
+            throw std::logic_error(height_test_.fault_of(reads, registers));
         datapath::Entries entries;  // NOLINT(cppcoreguidelines-pro-type-member-init): as many as are read
         const bool codes = reads.last_port() == 1;
+        const datapath::TableLayout& table = codes ? registers.displacement_map : registers.height_table;
+        const std::uint64_t bytes = table.bytes();
         for (unsigned k = 0; k < reads.entries(); ++k) {
-            const std::uint64_t address = reads.addresses()[k];
-            entries[k] = codes ? scene().code_entry((address - registers.displacement_map.base) /
-                                                    registers.displacement_map.entry_bytes)
-                               : scene().height_entry(address - registers.height_table.base);
+            const std::uint64_t offset = reads.addresses()[k] - table.base;
+            if (offset >= bytes)
+                read_outside(offset, bytes);
+            entries[k] = codes ? scene().code_entry(offset / table.entry_bytes) : scene().height_entry(offset);
         }
         datapath::HeightDecision decision;
         height_test_.decide(edge, entries, registers, decision);
@@ -161,6 +168,11 @@ class BareEdges {
     explicit BareEdges(datapath::HeightTest height_test) : height_test_(functions_of(height_test)) {}
 
   private:
+    [[noreturn, gnu::noinline]] void read_outside(std::uint64_t offset, std::uint64_t bytes) const {
+        throw std::out_of_range("height test " + std::string(height_test_.name) + ": reads() adds byte " +
+                                std::to_string(static_cast<std::int64_t>(offset)) + " of a table of " +
+                                std::to_string(bytes) + " bytes");
+    }
     const Scene& scene() const { return static_cast<const Scene&>(*this); }
     const datapath::Registers& r() const { return scene().scene_registers(); }
     const datapath::Formats& formats() const { return r().formats; }

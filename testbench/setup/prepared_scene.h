@@ -72,7 +72,7 @@ using TableSink = std::function<void(std::uint64_t address, const unsigned char*
 /// Writes the displacement map, the normal map and the height test's table, row by row, little endian, at the addresses
 /// of the registers' layouts.
 void write_tables(const PreparedScene& scene, const TableSink& sink);
-/// The last of these.
+/// The last of these. Throws InputError if the test's part writes what the table does not hold.
 void write_height_table(const PreparedScene& scene, const TableSink& sink);
 
 }  // namespace tessera

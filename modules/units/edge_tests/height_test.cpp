@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 
 #include "modules/stage/stage_steps.h"
 
@@ -31,8 +32,12 @@ HeightTestUnit::HeightTestUnit(const sc_core::sc_module_name& name, const UnitCo
 }
 
 void HeightTestUnit::reads(const HeightOperands& edge, Reads& reads) const {
-    if (registers_.tests.summed_height_test)
+    if (registers_.tests.summed_height_test) {
         functions_.reads(edge, registers_, reads);
+        if (!functions_.as_declared(reads, registers_))
+            SC_REPORT_ERROR("tessera/height_test",
+                            (std::string(name()) + ": " + functions_.fault_of(reads, registers_)).c_str());
+    }
 }
 
 HeightResult HeightTestUnit::process(const HeightOperands& edge, const Entries& entries) {

@@ -276,7 +276,7 @@ TEST_CASE("a height test of one's own that is wrong fails its run, and names the
         int exit_code = 1;
     };
     for (const Fault& fault :
-         {Fault{"host.h", "std::min(low[to]", "std::max(low[to]", "0.05", "range table: "},
+         {Fault{"host.h", "std::max(high[to]", "std::min(high[to]", "0.05", "range table: "},
           {"host.h", "highest, highest,", "highest / 2, highest,", "0.05", "tests.range_threshold = "},
           {"range_test.h", "highest - lowest > limit", "highest - lowest >= limit", "0", "Decisions: FAILED"},
           {"range_test.h", "table.rows = 1;", "table.rows = 2;", "0.05", "range_table.rows = 2"},

@@ -2,12 +2,15 @@
 #include <catch2/catch.hpp>
 #include <cstddef>
 #include <cstdint>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "modules/datapath/height_tests.h"
 #include "modules/datapath/midpoint.h"
 #include "modules/datapath/table_shapes.h"
 #include "testbench/common/random.h"
+#include "testbench/prove/random_edges/edge_machine.h"
 
 using namespace tessera;
 using namespace tessera::datapath;
@@ -139,4 +142,105 @@ TEST_CASE("height tests: an edge asks for a split if the compared value exceeds 
         CHECK(asked > 50);
         CHECK(asked < 1950);
     }
+}
+
+namespace {
+
+/// Declares one request of one entry, or for codes three, and adds what a case says.
+struct AnyReads : HeightTestFunctions {
+    using Adds = void (*)(Reads&, const Registers&);
+    Adds adds;
+
+    explicit AnyReads(Adds its_adds, unsigned its_requests = 1)
+        : HeightTestFunctions("any", its_requests), adds(its_adds) {}
+    int entry_bits(const Formats&) const override { return 16; }
+    void shape(const Registers&, TableLayout& table) const override { table.columns = table.rows = 4; }
+    std::array<Threshold, 2> thresholds(const Formats&) const override { return {}; }
+    void reads(const HeightEdge&, const Registers& r, Reads& reads) const override { adds(reads, r); }
+    void decide(const HeightEdge&, const Entries&, const Registers&, HeightDecision&) const override {}
+};
+
+}  // namespace
+
+TEST_CASE("height tests: reads that are not as declared are named with their limit") {
+    const auto add = [](Reads& reads, unsigned requests, unsigned entries) {
+        for (unsigned k = 0; k < requests; ++k) {
+            reads.add_request();
+            for (unsigned l = 0; l < entries; ++l)
+                reads.add_entry(0);
+        }
+    };
+    struct Row {
+        unsigned requests, codes;
+        bool rectangles;
+        unsigned port, added, of_entries;
+        std::string says;  // nothing: as declared
+    };
+    for (const Row& row : {
+             Row{1, 0, false, 0, 1, 1, ""},
+             {3, 0, true, 0, 3, 9, ""},
+             {2, 3, false, 1, 1, 3, ""},
+             {3, 0, false, 0, 4, 1, "adds 4 requests, but at most 3 are kept"},
+             {3, 0, false, 0, 2, 1, "adds 2 requests, but requests = 3 is declared"},
+             {1, 0, false, 0, 0, 0, "adds 0 requests, but requests = 1 is declared, and may_read_nothing = false"},
+             {1, 0, false, 0, 1, 2, "adds 2 entries to a request, but with rectangles = false the range is 1 to 1"},
+             {1, 0, true, 0, 1, 28, "adds 28 entries to a request, but with rectangles = true the range is 1 to 9"},
+             {2, 0, true, 0, 2, 0, "adds 0 entries to a request, but with rectangles = true the range is 1 to 9"},
+             {2, 3, false, 1, 2, 3, "adds 2 requests, but codes are read in 1"},
+             {2, 3, false, 1, 1, 2, "adds 2 entries to a request, but with codes = 3 the range is 3 to 3"},
+             {1, 0, false, 1, 1, 1, "goes through port 1, but the last port is 0: in this design no edge reads codes"},
+             {1, 3, false, 2, 1, 1, "goes through port 2, but the last port is 1"},
+         }) {
+        AnyReads test(nullptr, row.requests);
+        test.codes = row.codes;
+        test.rectangles = row.rectangles;
+        Reads reads;
+        reads.through(row.port);
+        add(reads, row.added, row.of_entries);
+        INFO(row.says);
+        CHECK(test.as_declared(reads, {}) == row.says.empty());
+        if (!row.says.empty())
+            CHECK(test.fault_of(reads, {}) == "height test any: reads() " + row.says);
+    }
+    AnyReads test(nullptr, 2);
+    test.codes = 1;
+    Reads mixed, early;
+    mixed.add(0);
+    mixed.through(1);
+    mixed.add(0);
+    test.requests = 2;
+    CHECK_FALSE(test.as_declared(mixed, {}));
+    mixed.through(0);
+    CHECK_FALSE(test.as_declared(mixed, {}));
+    CHECK(test.fault_of(mixed, {}) == "height test any: reads() adds requests through both ports");
+    early.add_entry(0);
+    early.add(0);
+    early.add(0);
+    CHECK_FALSE(test.as_declared(early, {}));
+    CHECK(test.fault_of(early, {}) == "height test any: reads() adds an entry before the first request");
+}
+
+TEST_CASE("height tests: the bare machine refuses reads that are not as declared, or outside the table") {
+    const auto said = [](const char* name, AnyReads::Adds adds) -> std::string {
+        AnyReads* const test = new AnyReads(adds);  // for the rest of the process
+        test->name = name;
+        Registers r = registers_of(add_height_test(*test));
+        Tables tables = make_tables(r, std::vector<std::uint32_t>(48 * 32), {});
+        const Machine machine(r, std::move(tables));
+        try {
+            machine.test_heights(edge_along_u(10, 10, 8));
+        } catch (const std::logic_error& error) {
+            return error.what();
+        }
+        return "";
+    };
+    CHECK(said("last", [](Reads& reads, const Registers& r) { reads.add(r.height_table.base + 30); }).empty());
+    CHECK(said("after", [](Reads& reads, const Registers& r) { reads.add(r.height_table.base + 32); }) ==
+          "height test after: reads() adds byte 32 of a table of 32 bytes");
+    CHECK(said("before", [](Reads& reads, const Registers& r) { reads.add(r.height_table.base - 2); }) ==
+          "height test before: reads() adds byte -2 of a table of 32 bytes");
+    CHECK(said("many", [](Reads& reads, const Registers& r) {
+              for (int k = 0; k < 100; ++k)
+                  reads.add(r.height_table.base);
+          }) == "height test many: reads() adds 100 requests, but at most 3 are kept");
 }
