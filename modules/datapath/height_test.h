@@ -36,6 +36,9 @@ struct HeightDecision {
 /// testbench's models call these. Functions are pure: of the edge, the entries read for it and the registers.
 class HeightTestFunctions {
   public:
+    static constexpr unsigned most_latency = 1000000;
+    static constexpr int first_free_feature = 13, last_feature = 15;  ///< of the device's register `features`
+
     /// One of HeightDecision::values, as in a waveform.
     struct Value {
         const char* name = nullptr;

@@ -16,25 +16,72 @@ namespace tessera::datapath {
 template <class Test>
 inline const Test the_test{};
 
-/// For add_height_test().
-inline std::vector<const HeightTestFunctions*>& list_of_height_tests() {
+/// One for each HeightTest, in its order. `added`: for add_height_test().
+inline const std::vector<const HeightTestFunctions*>& height_tests(const HeightTestFunctions* added = nullptr) {
     static std::vector<const HeightTestFunctions*> all{&the_test<SummedHeightTest>, &the_test<RankTest>,
                                                        &the_test<CurvatureTest>, &the_test<MipmapTest>};
+    if (added != nullptr)
+        all.push_back(added);
     return all;
 }
 
-/// One for each HeightTest, in its order.
-inline const std::vector<const HeightTestFunctions*>& height_tests() {
-    return list_of_height_tests();
+/// What is wrong with the declarations of a test to be added, with the limit; empty if nothing is.
+inline std::string declaration_fault(const HeightTestFunctions& test) {
+    using Its = HeightTestFunctions;
+    constexpr std::string_view letters = "abcdefghijklmnopqrstuvwxyz", more = "abcdefghijklmnopqrstuvwxyz0123456789_";
+    // Of other tests, and of what splits a triangle.
+    constexpr std::string_view taken = " base, both, generation, highlight, normal, tex_coord, view";
+    const std::string_view name = test.name == nullptr ? "" : test.name;
+    if (name.empty() || letters.find(name[0]) == letters.npos || name.find_first_not_of(more) != name.npos ||
+        (std::string(taken) + ",").find(" " + std::string(name) + ",") != taken.npos)
+        return "a height test is called \"" + std::string(name) +
+               "\": choose a name of lower-case letters, digits and _, other than" + std::string(taken);
+    for (const Its* const other : height_tests())
+        if (name == other->name)
+            return "there is another height test " + std::string(name) + ": choose another name";
+
+    const std::string its = "height test " + std::string(name) + ": ";
+    const auto out_of_range = [&](const std::string& what, long long value, long long least, long long most) {
+        return its + what + " = " + std::to_string(value) + ", but the range is " + std::to_string(least) + " to " +
+               std::to_string(most);
+    };
+    struct Number {
+        const char* name;
+        long long value, least, most;
+    };
+    const Formats formats;
+    const auto& values = test.values;
+    const auto unused =
+        std::find_if(values.begin(), values.end(), [](const Its::Value& value) { return value.name == nullptr; });
+    for (const Number& number : {Number{"latency", test.latency, 1, Its::most_latency},
+                                 Number{"requests", test.requests, 0, Reads::most_requests},
+                                 Number{"codes", test.codes, 0, most_rectangle_entries},
+                                 Number{"compared", test.compared, -1, unused - values.begin() - 1},
+                                 Number{"entry_bits()", test.entry_bits(formats), 1, 64}})
+        if (number.value < number.least || number.value > number.most)
+            return out_of_range(number.name, number.value, number.least, number.most);
+    for (const Its::Value& value : values)
+        if (value.name != nullptr && (value.bits < 1 || value.bits > 64))
+            return out_of_range("bits of the value " + std::string(value.name), value.bits, 1, 64);
+    for (const Its::Threshold& threshold : test.thresholds(formats))
+        if (threshold.name != nullptr && (threshold.bits < 0 || threshold.bits > 63))
+            return out_of_range("bits of the threshold " + std::string(threshold.name), threshold.bits, 0, 63);
+    if (test.feature >= 0) {
+        if (test.feature < Its::first_free_feature || test.feature > Its::last_feature)
+            return out_of_range("feature", test.feature, Its::first_free_feature, Its::last_feature);
+        for (const Its* const other : height_tests())
+            if (other->feature == test.feature)
+                return its + "feature = " + std::to_string(test.feature) + " is that of the height test " + other->name;
+    }
+    return {};
 }
 
-/// Adds a test for the rest of the program, which must call it first. Throws std::invalid_argument if its name is taken.
+/// Adds a test for the rest of the program, which must call it first. Throws std::invalid_argument if its declarations
+/// are wrong.
 inline HeightTest add_height_test(const HeightTestFunctions& test) {
-    for (const HeightTestFunctions* const other : height_tests())
-        if (std::string_view(other->name) == test.name)
-            throw std::invalid_argument("there is another height test " + std::string(test.name));
-    list_of_height_tests().push_back(&test);
-    return static_cast<HeightTest>(height_tests().size() - 1);
+    if (const std::string fault = declaration_fault(test); !fault.empty())
+        throw std::invalid_argument(fault);
+    return static_cast<HeightTest>(height_tests(&test).size() - 1);
 }
 
 /// Of a test of this folder.

@@ -5,6 +5,8 @@
 
 namespace tessera {
 
+static_assert(datapath::HeightTestFunctions::most_latency == most_cycles);
+
 /// The timing of a design's height test.
 inline UnitTiming height_test_timing(const Timing& timing, const datapath::Formats& formats) {
     UnitTiming its = timing.height_test;

@@ -1,6 +1,9 @@
 #include "testbench/setup/height_tests/height_test_host.h"
 
+#include <fmt/format.h>
+
 #include <cstddef>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -17,6 +20,31 @@ std::vector<const HeightTestHost*>& list() {
     return all;
 }
 
+/// What the parts of a test do not agree on; empty if there is nothing.
+std::string fault_of(const HeightTestHost& host, const datapath::HeightTestFunctions& test) {
+    std::set<std::string> keys, registers;
+    for (const HeightThresholdKey& key : host.thresholds())
+        keys.insert(key.name);
+    for (const auto& threshold : test.thresholds(datapath::Formats()))
+        if (threshold.name != nullptr)
+            registers.insert(threshold.name);
+    for (const std::string& name : registers)
+        if (keys.count(name) == 0)
+            return fmt::format("the register of {} has no key in the host's part", name);
+    for (const std::string& name : keys)
+        if (registers.count(name) == 0)
+            return fmt::format("the key {} of the host's part has no register: there are {}, at most two", name,
+                               fmt::join(registers, ", "));
+    if (const char* const searched = host.searched(); searched != nullptr) {
+        if (keys.count(searched) == 0)
+            return fmt::format("searched() is {}, but the host's keys are {}", searched, fmt::join(keys, ", "));
+        if (test.compared < 0)
+            return fmt::format("searched() is {}, but compared = {}: no value is compared with it", searched,
+                               test.compared);
+    }
+    return {};
+}
+
 }  // namespace
 
 const std::vector<const HeightTestHost*>& height_test_hosts() {
@@ -26,6 +54,8 @@ const std::vector<const HeightTestHost*>& height_test_hosts() {
 void add_height_test_host(const HeightTestHost& host) {
     if (list().size() + 1 != datapath::height_tests().size())
         throw std::invalid_argument("the host's part belongs to the height test that was added last");
+    if (const std::string fault = fault_of(host, *datapath::height_tests().back()); !fault.empty())
+        throw std::invalid_argument(fmt::format("height test {}: {}", datapath::height_tests().back()->name, fault));
     list().push_back(&host);
 }
 

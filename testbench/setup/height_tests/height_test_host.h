@@ -59,7 +59,7 @@ const HeightTestHost& mipmap_host();
 /// In the order of datapath::height_tests().
 const std::vector<const HeightTestHost*>& height_test_hosts();
 /// Adds that of the test added last to datapath::height_tests(), before any TestSettings are made. No other key of [tests]
-/// may have its thresholds' names. Throws std::invalid_argument if that test has its part.
+/// may have its thresholds' names. Throws std::invalid_argument if that test has its part, or declares other thresholds.
 void add_height_test_host(const HeightTestHost& host);
 
 /// "summed_height: ...; rank: ...": all of them.

@@ -374,8 +374,8 @@ inline const std::vector<NotFollowed>& not_followed() {
     const std::string none = "no advice";
     static const std::vector<NotFollowed> all{
         {"set it to a library built as in testbench/examples/height_test/README.md", {}, "packaging/test_packaging.cpp"},
-        {"rename the library's", {}, "packaging/test_packaging.cpp"},
-        {"choose a name of lower-case letters, digits and _, other than {}", {}, "packaging/test_packaging.cpp"},
+        {"choose another name", {}, "packaging/test_packaging.cpp"},
+        {"choose a name of lower-case letters, digits and _, other than", {}, "packaging/test_packaging.cpp"},
         {"name others with --tests, such as --tests {}", "only a height test of one's own can have no threshold that is searched"},
         {"narrow the formats to the ranges of their keys", "", "machine/test_limits_formats.cpp"},
         {"use a smaller map or raise formats.texture_integer", "", "machine/test_limits_formats.cpp"},

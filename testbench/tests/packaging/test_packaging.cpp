@@ -335,7 +335,7 @@ TEST_CASE("a library that is no height test is refused with the reason") {
                 "extern \"C\" const Test* tessera_height_test() { return &test; }\n");
     };
     named("rank");
-    refused("test.so", "there is another height test rank: rename the library's");
+    refused("test.so", "there is another height test rank: choose another name");
     named("view");
     refused("test.so", "is called \"view\": choose a name of lower-case letters, digits and _, other than base");
 }

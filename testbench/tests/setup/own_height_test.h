@@ -46,6 +46,7 @@ struct OwnHost : HeightTestHost {
     std::vector<HeightThresholdKey> keys{{"own_threshold", 0.5, "full scale", between(0, 1), "a threshold"}};
     std::function<void(const datapath::TableLayout&, const TableSink&)> writes = [](const datapath::TableLayout&,
                                                                                     const TableSink&) {};
+    const char* its_searched = "own_threshold";
     Range its_range{0.001, 1};
 
     const char* meaning() const override { return "a test"; }
@@ -57,7 +58,7 @@ struct OwnHost : HeightTestHost {
     void write_table(const PreparedScene& scene, const TableSink& sink) const override {
         writes(scene.registers.height_table, sink);
     }
-    const char* searched() const override { return keys.front().name; }
+    const char* searched() const override { return its_searched; }
     Range range(const PreparedScene&, datapath::SummedHeightUnit) const override { return its_range; }
 };
 

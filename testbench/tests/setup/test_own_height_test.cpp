@@ -53,3 +53,35 @@ TEST_CASE("an own height test's table: bytes outside it, and entries wider than 
     CHECK(error() == "height test own: write_table() writes 2 bytes from byte -4 on, but the table has 16 bytes");
     CHECK(written == 16);
 }
+
+TEST_CASE("an own height test's two parts that declare different thresholds are refused") {
+    static OwnTest test;
+    static OwnHost host;
+    datapath::add_height_test(test);
+    const auto refusal = [&]() -> std::string {
+        try {
+            add_height_test_host(host);
+        } catch (const std::invalid_argument& error) {
+            return error.what();
+        }
+        return "";
+    };
+    const HeightThresholdKey key = host.keys[0];
+    host.keys = {key, key};
+    host.keys[1].name = "second_threshold";
+    CHECK(refusal() ==
+          "height test own: the key second_threshold of the host's part has no register: there are own_threshold, at "
+          "most two");
+    host.keys = {key};
+    test.registers[1] = {"second_threshold", 12, false, "codes"};
+    CHECK(refusal() == "height test own: the register of second_threshold has no key in the host's part");
+    test.registers[1] = {};
+    host.its_searched = "third_threshold";
+    CHECK(refusal() == "height test own: searched() is third_threshold, but the host's keys are own_threshold");
+    host.its_searched = "own_threshold";
+    test.compared = -1;
+    CHECK(refusal() == "height test own: searched() is own_threshold, but compared = -1: no value is compared with it");
+    test.compared = 0;
+    CHECK(refusal().empty());
+    CHECK(refusal() == "the host's part belongs to the height test that was added last");
+}

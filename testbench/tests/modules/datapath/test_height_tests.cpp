@@ -244,3 +244,59 @@ TEST_CASE("height tests: the bare machine refuses reads that are not as declared
                   reads.add(r.height_table.base);
           }) == "height test many: reads() adds 100 requests, but at most 3 are kept");
 }
+
+TEST_CASE("height tests: one whose declarations are wrong is not added, by a library or by a program") {
+    struct Declared : AnyReads {
+        int bits = 16;
+        std::array<Threshold, 2> its_thresholds{};
+        Declared() : AnyReads(nullptr) {
+            name = "declared";
+            values = {{{"value", 16}}};
+        }
+        int entry_bits(const Formats&) const override { return bits; }
+        std::array<Threshold, 2> thresholds(const Formats&) const override { return its_thresholds; }
+    };
+    const auto refusal = [](void (*make_wrong)(Declared&)) -> std::string {
+        Declared test;
+        make_wrong(test);
+        const std::size_t before = height_tests().size();
+        try {
+            add_height_test(test);
+        } catch (const std::invalid_argument& error) {
+            CHECK(height_tests().size() == before);
+            return error.what();
+        }
+        return "";
+    };
+    const std::string other =
+        "\": choose a name of lower-case letters, digits and _, other than base, both, generation, highlight, normal, "
+        "tex_coord, view";
+    CHECK(refusal([](Declared& t) { t.name = nullptr; }) == "a height test is called \"" + other);
+    CHECK(refusal([](Declared& t) { t.name = "view"; }) == "a height test is called \"view" + other);
+    CHECK(refusal([](Declared& t) { t.name = "2nd"; }) == "a height test is called \"2nd" + other);
+    CHECK(refusal([](Declared& t) { t.name = "a test"; }) == "a height test is called \"a test" + other);
+    CHECK(refusal([](Declared& t) { t.name = "rank"; }) == "there is another height test rank: choose another name");
+    const std::string its = "height test declared: ";
+    CHECK(refusal([](Declared& t) { t.latency = 0; }) == its + "latency = 0, but the range is 1 to 1000000");
+    CHECK(refusal([](Declared& t) { t.latency = 1000001; }) ==
+          its + "latency = 1000001, but the range is 1 to 1000000");
+    CHECK(refusal([](Declared& t) { t.requests = 4; }) == its + "requests = 4, but the range is 0 to 3");
+    CHECK(refusal([](Declared& t) { t.codes = 10; }) == its + "codes = 10, but the range is 0 to 9");
+    CHECK(refusal([](Declared& t) { t.compared = 1; }) == its + "compared = 1, but the range is -1 to 0");
+    CHECK(refusal([](Declared& t) { t.bits = 65; }) == its + "entry_bits() = 65, but the range is 1 to 64");
+    CHECK(refusal([](Declared& t) { t.values[0].bits = 65; }) ==
+          its + "bits of the value value = 65, but the range is 1 to 64");
+    CHECK(refusal([](Declared& t) {
+              t.its_thresholds[0] = {"limit", 64};
+          }) == its + "bits of the threshold limit = 64, but the range is 0 to 63");
+    CHECK(refusal([](Declared& t) { t.feature = 12; }) == its + "feature = 12, but the range is 13 to 15");
+    static Declared right;
+    right.feature = 13;
+    const HeightTest added = add_height_test(right);
+    CHECK(&functions_of(added) == &right);
+    CHECK(refusal([](Declared&) {}) == "there is another height test declared: choose another name");
+    CHECK(refusal([](Declared& t) {
+              t.name = "second";
+              t.feature = 13;
+          }) == "height test second: feature = 13 is that of the height test declared");
+}
