@@ -1,5 +1,6 @@
 #pragma once
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <stdexcept>
 #include <string>
@@ -16,10 +17,13 @@ namespace tessera::datapath {
 template <class Test>
 inline const Test the_test{};
 
+/// Those of this folder.
+inline constexpr std::array<const HeightTestFunctions*, 4> first_height_tests{
+    &the_test<SummedHeightTest>, &the_test<RankTest>, &the_test<CurvatureTest>, &the_test<MipmapTest>};
+
 /// One for each HeightTest, in its order. `added`: for add_height_test().
 inline const std::vector<const HeightTestFunctions*>& height_tests(const HeightTestFunctions* added = nullptr) {
-    static std::vector<const HeightTestFunctions*> all{&the_test<SummedHeightTest>, &the_test<RankTest>,
-                                                       &the_test<CurvatureTest>, &the_test<MipmapTest>};
+    static std::vector<const HeightTestFunctions*> all(first_height_tests.begin(), first_height_tests.end());
     if (added != nullptr)
         all.push_back(added);
     return all;
@@ -82,6 +86,11 @@ inline HeightTest add_height_test(const HeightTestFunctions& test) {
     if (const std::string fault = declaration_fault(test); !fault.empty())
         throw std::invalid_argument(fault);
     return static_cast<HeightTest>(height_tests(&test).size() - 1);
+}
+
+/// Whether it is one of those added: what goes wrong may be its fault.
+inline bool is_added(HeightTest test) {
+    return static_cast<std::size_t>(test) >= first_height_tests.size();
 }
 
 /// Of a test of this folder.

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string_view>
 
+#include "modules/datapath/height_tests.h"
 #include "testbench/commands/option_values.h"
 #include "testbench/commands/progress.h"
 #include "testbench/commands/run_files.h"
@@ -305,9 +306,14 @@ ExitCode tune_command(const TuneOrder& order, const fs::path& data_folder) {
     const std::uint64_t expected = figures.triangles;
     figures = measure_tuned(job, base, map, setup, mesh);
     if (figures.triangles != expected || figures.triangles != result.point.outcome.triangles)
-        throw std::runtime_error(
-            fmt::format("functional mode's mesh has {} triangles, the search's {}: this is a bug in tessera tune",
-                        figures.triangles, result.point.outcome.triangles));
+        throw std::runtime_error(fmt::format(
+            "functional mode's mesh has {} triangles, the search's {}: this is a bug in {}", figures.triangles,
+            result.point.outcome.triangles,
+            is_added(job.hardware.height_test)
+                ? fmt::format("the height test {}, whose decide() depends on more than the edge, its entries "
+                              "and the registers, or in tessera tune",
+                              name_of(job.hardware.height_test))
+                : "tessera tune"));
     progress.clear();
 
     request.goal.error = bound;  // as requested

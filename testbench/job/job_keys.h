@@ -63,6 +63,9 @@ const KeyTable* find_table(std::string_view name);
 
 JobValue default_of(const Key& key);
 
+/// For an unknown threshold or height test: how the program gets to know one's own. Empty if it has loaded any.
+std::string own_height_test_hint();
+
 /// "1 .. 2048", "fifo, lifo", "true, false", ...
 std::string range_text(const Key& key);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "modules/datapath/height_tests.h"
 #include "testbench/common/error.h"
 #include "testbench/job/job_keys.h"
 #include "testbench/job/nearest_name.h"
@@ -63,7 +64,8 @@ struct FaultOf {
         const std::string near = nearest_name(value, {key.choices.begin(), key.choices.end()});
         return "is not a choice; the choices are " + joined(key.choices) +
                (key.kind == KeyKind::span ? ", or two numbers [low, high]" : "") +
-               (near.empty() ? "" : "; did you mean \"" + near + "\"?");
+               (near.empty() ? "" : "; did you mean \"" + near + "\"?") +
+               (key.name == "hardware.height_test" ? own_height_test_hint() : "");
     }
 
     std::string operator()(bool) const { return key.kind == KeyKind::flag ? "" : wrong_kind(); }
@@ -123,6 +125,12 @@ std::string range_text(const Key& key) {
         case KeyKind::folder: return "path from the current directory";
     }
     return "";
+}
+
+std::string own_height_test_hint() {
+    return datapath::height_tests().size() > datapath::first_height_tests.size()
+               ? ""
+               : "; a height test of one's own is known if the environment variable TESSERA_HEIGHT_TESTS names its library";
 }
 
 std::string wanted_text(const Key& key) {

@@ -56,15 +56,17 @@ std::string keys_text(const KeyTable& table) {
 
 std::string suggestion(std::string_view unknown_name) {
     const std::string near = nearest_name(unknown_name, all_names());
+    const bool threshold = unknown_name.rfind("tests.", 0) == 0 && unknown_name.find("_threshold") != unknown_name.npos;
+    const std::string hint = threshold ? own_height_test_hint() : "";
     if (near.empty())
-        return "; `tessera keys` lists them all";
+        return "; `tessera keys` lists them all" + hint;
     const KeyTable* group = find_table(near);
     const bool within_another = unknown_name.find('.') != std::string_view::npos;
     return group != nullptr && within_another
                ? fmt::format(
                      "; did you mean the group `{0}`? It is a top-level table: write [{0}], then its keys ({1})", near,
                      keys_text(*group))
-               : fmt::format("; did you mean `{}`?", near);
+               : fmt::format("; did you mean `{}`?{}", near, hint);
 }
 
 template <std::size_t Size>

@@ -80,13 +80,19 @@ std::string Simulation::run() {
         for (const auto& machine : machines)
             machine->finish(cycles_);
     }
+    const datapath::HeightTest height_test = setup.registers.formats.height_test;
     if (monitor.limit_reached())
         throw ResourceError(fmt::format(
             "limits.triangles = {}: the mesh has more triangles than that; raise the thresholds "
             "under [tests], "
-            "{}, or raise the limit",
+            "{}, or raise the limit{}",
             monitor.limit(),
-            setup.registers.tests.generation_test ? "lower tests.generation_limit" : "set tests.generation = true"));
+            setup.registers.tests.generation_test ? "lower tests.generation_limit" : "set tests.generation = true",
+            is_added(height_test)
+                ? fmt::format(". Height test {} is not tessera's: if higher thresholds do not help, its "
+                              "decide() asks for too many splits",
+                              functions_of(height_test).name)
+                : ""));
     for (const auto& machine : machines)
         check_limits(machine->pipeline);
     return stuck();

@@ -59,8 +59,16 @@ void HeightTestUnit::trace_signals(Signals& signals) const {
 }
 
 void HeightTestUnit::trace_processed(Signals& signals, const HeightOperands&, const HeightResult&) const {
-    for (unsigned k = 0; k < functions_.traced(registers_.formats); ++k)
-        signals.value(functions_.values[k].name, functions_.values[k].bits, decision_.values[k]);
+    for (unsigned k = 0; k < functions_.traced(registers_.formats); ++k) {
+        const auto& [value, bits] = functions_.values[k];
+        if (bits < 64 && decision_.values[k] >> bits != 0)
+            SC_REPORT_ERROR(
+                "tessera/height_test",
+                (std::string(name()) + ": height test " + functions_.name + ": the value " + value + " is " +
+                 std::to_string(decision_.values[k]) + ", but " + std::to_string(bits) + " bits are declared")
+                    .c_str());
+        signals.value(value, bits, decision_.values[k]);
+    }
 }
 
 }  // namespace tessera

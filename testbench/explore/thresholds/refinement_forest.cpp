@@ -1,8 +1,11 @@
 #include "testbench/explore/thresholds/refinement_forest.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 #include "modules/datapath/triangle_pass.h"
 #include "modules/datapath/triangulate.h"
@@ -84,6 +87,12 @@ RefinementForest::Edge RefinementForest::make_edge(const Vertex& i, const Vertex
     const datapath::HeightDecision heights = datapath_.test_heights({i.texture, j.texture, middle});
     edge.height = heights.values.at(static_cast<std::size_t>(height_test_.compared));
     edge.weight = static_cast<std::uint32_t>(height_test_.weight(heights));
+    if (heights.asks != (edge.height > height_test_.limit(edge.weight, r.tests)))
+        throw std::logic_error(
+            fmt::format("height test {}: decide() {} a split of an edge whose value {} = {} has the limit() {}",
+                        height_test_.name, heights.asks ? "asks for" : "does not ask for",
+                        height_test_.values.at(static_cast<std::size_t>(height_test_.compared)).name, edge.height,
+                        height_test_.limit(edge.weight, r.tests)));
     edge.view = pixels(i.screen, j.screen);
     edge.open = datapath::tex_coord_test(i.texture, j.texture, middle, r.formats);
     edge.generation = datapath::inserted_generation(i.generation, j.generation);

@@ -31,6 +31,7 @@ struct Outcome {
 class RefinementForest {
   public:
     /// `setup` must outlive it; its height test compares one value with a threshold. `errors`: measures triangles; may be null for a forest that only counts.
+    /// Here and below: std::logic_error if the height test decides otherwise than by that value.
     RefinementForest(const MachineSetup& setup, const TexelError* errors);
 
     /// Counts the triangles; stops at `limit`.

@@ -53,7 +53,7 @@ ThresholdSearch::Levels ThresholdSearch::normal_levels() const {
 }
 
 ThresholdSearch::Levels ThresholdSearch::summed_height_levels(SummedHeightUnit unit) const {
-    const HeightTestHost::Range range = host_of(height_test_).range(setup_, unit);
+    const HeightTestHost::Range range = searched_range(height_test_, setup_, unit);
     return {level_of(range.finest) - 1, level_of(range.coarsest)};
 }
 

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "modules/datapath/height_tests.h"
+#include "testbench/common/error.h"
 
 namespace tessera {
 
@@ -79,6 +80,21 @@ std::vector<std::string_view> searched_height_tests() {
 
 const HeightTestHost& host_of(datapath::HeightTest test) {
     return *height_test_hosts().at(static_cast<std::size_t>(test));
+}
+
+HeightTestHost::Range searched_range(datapath::HeightTest test, const PreparedScene& scene,
+                                     datapath::SummedHeightUnit unit) {
+    const HeightTestHost& host = host_of(test);
+    const HeightTestHost::Range range = host.range(scene, unit);
+    double most = 0;  // of the key
+    for (const HeightThresholdKey& key : host.thresholds())
+        if (key.name == std::string_view(host.searched()))
+            most = key.range.high;
+    if (!(range.finest > 0 && range.finest < range.coarsest && range.coarsest <= most))
+        throw InputError(
+            fmt::format("height test {}: range() is {:g} to {:g}, but 0 < finest < coarsest <= {:g} is needed",
+                        functions_of(test).name, range.finest, range.coarsest, most));
+    return range;
 }
 
 }  // namespace tessera

@@ -70,4 +70,8 @@ std::vector<std::string_view> searched_height_tests();
 
 const HeightTestHost& host_of(datapath::HeightTest test);
 
+/// Its range(). Throws InputError if that cannot be searched.
+HeightTestHost::Range searched_range(datapath::HeightTest test, const PreparedScene& scene,
+                                     datapath::SummedHeightUnit unit);
+
 }  // namespace tessera

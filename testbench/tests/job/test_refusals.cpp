@@ -126,6 +126,12 @@ TEST_CASE("mistyped names are reported with their position and a suggestion") {
             {"[mesh]\naddress_u = \"clamp\"\n", {"did you mean `map.address_u`?"}},
             {"queue_order = \"lifo\"\n", {"did you mean `hardware.queue_order`?"}},
             {"\"mesh.rows\" = 2\n", {"unknown key `\"mesh.rows\"`; did you mean `mesh.rows`?"}},
+            {"[tests]\ngradient_threshold = 2\n",
+             {"unknown key `tests.gradient_threshold`",
+              "; a height test of one's own is known if the environment "
+              "variable TESSERA_HEIGHT_TESTS names its library"}},
+            {"[hardware]\nheight_test = \"gradient\"\n",
+             {"is not a choice; the choices are summed_height, rank, curvature, mipmap", "TESSERA_HEIGHT_TESTS"}},
             {"xyzzyplugh = 2\n", {"unknown key `xyzzyplugh`; `tessera keys` lists"}},
             {"[[mesh]]\nrows = 2\n", {"`mesh` is an array of 1"}},
             {"mesh = 3\n", {"`mesh` is 3, an integer", "write [mesh]"}},

@@ -1,5 +1,6 @@
 // A height test of one's own that is wrong: which error says so.
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "modules/datapath/table_shapes.h"
 #include "testbench/setup/height_tests/table_rows.h"
@@ -84,4 +85,21 @@ TEST_CASE("an own height test's two parts that declare different thresholds are 
     test.compared = 0;
     CHECK(refusal().empty());
     CHECK(refusal() == "the host's part belongs to the height test that was added last");
+}
+
+TEST_CASE("an own height test's range() that cannot be searched is refused") {
+    static const OwnTest test;
+    static OwnHost host;
+    const datapath::HeightTest added = datapath::add_height_test(test);
+    add_height_test_host(host);
+    const PreparedScene scene;
+    const auto error = [&](double finest, double coarsest) {
+        host.its_range = {finest, coarsest};
+        return input_error_of([&] { searched_range(added, scene, datapath::SummedHeightUnit::sum); });
+    };
+    CHECK(error(0.001, 1).empty());
+    CHECK(error(0, 1) == "height test own: range() is 0 to 1, but 0 < finest < coarsest <= 1 is needed");
+    CHECK(error(0.5, 0.5) == "height test own: range() is 0.5 to 0.5, but 0 < finest < coarsest <= 1 is needed");
+    CHECK(error(0.5, 2) == "height test own: range() is 0.5 to 2, but 0 < finest < coarsest <= 1 is needed");
+    CHECK(error(std::nan(""), 1) == "height test own: range() is nan to 1, but 0 < finest < coarsest <= 1 is needed");
 }

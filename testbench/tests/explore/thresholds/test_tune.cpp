@@ -19,6 +19,7 @@
 #include "testbench/machine/bare_recursion.h"
 #include "testbench/machine/inputs.h"
 #include "testbench/setup/thresholds.h"
+#include "testbench/tests/setup/own_height_test.h"
 #include "testbench/tests/support/refusals.h"
 
 using namespace tessera;
@@ -504,4 +505,23 @@ TEST_CASE("goals that cannot be met are refused with the nearest that can") {
     request.space.summed_height = false;
     request.job.tests.threshold("summed_height_threshold") = 0;
     CHECK_THAT(refused(), Contains("--triangles 100") && Contains("at any of the thresholds"));
+}
+
+TEST_CASE("an own height test that decides otherwise than by its compared value is not searched") {
+    struct Always : testing::OwnTest {
+        void decide(const datapath::HeightEdge& edge, const datapath::Entries& entries, const datapath::Registers& r,
+                    datapath::HeightDecision& decision) const override {
+            OwnTest::decide(edge, entries, r, decision);
+            decision.asks = true;
+        }
+    };
+    static const Always test;
+    static const testing::OwnHost host;
+    const HeightTest added = datapath::add_height_test(test);
+    add_height_test_host(host);
+    Job job = small_job();
+    job.hardware.height_test = added;
+    CHECK_THROWS_WITH(
+        Ground(job),
+        "height test own: decide() asks for a split of an edge whose value value = 0 has the limit() 2047");
 }
