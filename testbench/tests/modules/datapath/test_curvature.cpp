@@ -165,10 +165,3 @@ TEST_CASE("CT: every edge of narrow formats measures and decides alike from both
     CHECK(wrong == 0);
     CHECK(splits > 100);
 }
-
-TEST_CASE("CT: a measure equal to the threshold does not split") {
-    TestParameters parameters;
-    parameters.height_thresholds[0] = 10;
-    CHECK_FALSE(curvature_test(10, parameters));
-    CHECK(curvature_test(11, parameters));
-}

@@ -50,6 +50,8 @@ std::vector<Formats> many_formats() {
         all[k].final_edges = true;
     for (std::size_t k = 2; k < all.size(); k += 3)
         all[k].codes = true;
+    for (std::size_t k = 3; k < all.size(); k += 4)
+        all[k].highlight_tag = true;
     return all;
 }
 
@@ -157,7 +159,17 @@ std::vector<ExpectedField> fields_of(const Formats& formats) {
             number<bool>(vertex + "in front", 1, [k](Triangle& t) -> bool& { return t.vertices[k].screen.in_front; }));
         add_vector(fields, vertex + "N's", normal, k, &Vertex::screen_normal);
     }
-    fields.push_back(number<std::uint8_t>("split by", 2, [](Triangle& t) -> std::uint8_t& { return t.split_by; }));
+    // codes of 2 bits, or of 3 with that of the Highlight Test, whose value is 32
+    const int requesting = formats.highlight_tag ? 3 : 2;
+    fields.push_back({"split by",
+                      requesting,
+                      0,
+                      (1 << requesting) - 1,
+                      [](const Triangle& t) { return t.split_by % 4 + t.split_by / 32 * 4; },
+                      [](Triangle& t, std::int64_t code) {
+                          t.split_by = static_cast<std::uint8_t>(code % 4 + code / 4 * highlight_bit);
+                      },
+                      {1 << requesting}});
     // codes of 3 bits represent 4, 8, 16: a quarter of the value
     ExpectedField stopped_by{"stopped by",
                              3,
@@ -402,36 +414,21 @@ TEST_CASE("pack triangle: a value that does not fit is reported and changes no o
     CHECK(reported > 5000);
 }
 
-TEST_CASE("pack triangle: an impossible set of tests is reported") {
-    const Formats formats;
-    Packed packed(formats);
-    for (int value = 0; value < 256; ++value) {
-        Triangle split, stopped;
-        split.split_by = stopped.stopped_by = static_cast<std::uint8_t>(value);
-        CHECK(pack_triangle(split, formats, packed.bytes()) == (value < 4));
-        CHECK(pack_triangle(stopped, formats, packed.bytes()) == (value % 4 == 0 && value < 32));
-    }
-}
-
-TEST_CASE("pack triangle: a handedness is 1 or -1") {
-    const Formats formats;
-    Packed packed(formats);
-    for (int value = -128; value < 128; ++value) {
-        Triangle triangle;
-        triangle.vertices[2].handedness = static_cast<std::int8_t>(value);
-        CHECK(pack_triangle(triangle, formats, packed.bytes()) == (value == 1 || value == -1));
-    }
-}
-
-TEST_CASE("pack triangle: a generation too large for its field is reported") {
+TEST_CASE("pack triangle: of a field in eight bits only the values that it stands for fit") {
     for (int bits = 1; bits <= 8; ++bits) {
         Formats formats;
         formats.generation_bits = bits;
+        formats.highlight_tag = bits % 2 == 0;
         Packed packed(formats);
-        for (int generation = 0; generation < 256; ++generation) {
-            Triangle triangle;
-            triangle.vertices[1].generation = static_cast<std::uint8_t>(generation);
-            CHECK(pack_triangle(triangle, formats, packed.bytes()) == (generation >> bits == 0));
+        const unsigned requesting = requesting_tests & ~(formats.highlight_tag ? 0u : unsigned{highlight_bit});
+        for (unsigned value = 0; value < 256; ++value) {
+            Triangle split, stopped, turned, old;
+            split.split_by = stopped.stopped_by = old.vertices[1].generation = static_cast<std::uint8_t>(value);
+            turned.vertices[2].handedness = static_cast<std::int8_t>(value);
+            CHECK(pack_triangle(split, formats, packed.bytes()) == ((value & ~requesting) == 0));
+            CHECK(pack_triangle(stopped, formats, packed.bytes()) == ((value & ~unsigned{gating_tests}) == 0));
+            CHECK(pack_triangle(turned, formats, packed.bytes()) == (value == 1 || value == 255));  // 1 or -1
+            CHECK(pack_triangle(old, formats, packed.bytes()) == (value >> bits == 0));
         }
     }
 }

@@ -58,7 +58,7 @@ TEST_CASE("reciprocal: seeds and result within the stated errors") {
 
     Extremes errors;
     std::uint64_t smallest = ~std::uint64_t{0}, largest = 0;
-    sample(0x80000000, 1 << 24, 10'000'000, [&](std::uint32_t m) {
+    sample(0x80000000, 1 << 24, 2'000'000, [&](std::uint32_t m) {
         errors.take(reciprocal_error(m));
         smallest = std::min(smallest, reciprocal(m));
         largest = std::max(largest, reciprocal(m));
@@ -85,7 +85,7 @@ TEST_CASE("reciprocal root: seeds and result within the stated errors") {
 
     Extremes errors;
     std::uint64_t smallest = ~std::uint64_t{0}, largest = 0;
-    sample(0x40000000, 1 << 24, 10'000'000, [&](std::uint32_t m) {
+    sample(0x40000000, 1 << 24, 2'000'000, [&](std::uint32_t m) {
         errors.take(root_error(m));
         smallest = std::min(smallest, reciprocal_root(m));
         largest = std::max(largest, reciprocal_root(m));

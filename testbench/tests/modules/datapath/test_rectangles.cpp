@@ -200,30 +200,6 @@ TEST_CASE("rectangles: four reads inside the map, six across one border, nine ac
     CHECK(reads({4, 7, 3, 5}) == 9);
 }
 
-TEST_CASE("rectangles: 32-bit entries agree with 48-bit ones on a large map of large codes") {
-    Random random(17);
-    constexpr std::uint32_t width = 700, height = 500;  // sums up to 2^34.4: wraps five times
-    std::vector<std::uint32_t> codes(std::size_t{width} * height);
-    for (std::uint32_t& code : codes)
-        code = random.natural(60000, 65535);
-    for (const AddressMode mode : both_modes) {
-        const Machine narrow = machine_of(width, height, mode, mode, 32, codes);
-        const Machine wide = machine_of(width, height, mode, mode, 48, codes);
-        int compared = 0;
-        for (int k = 0; k < 50'000; ++k) {
-            const TexCoord t{random.natural(0, width << 12), random.natural(0, height << 12)};
-            const RectangleSize size{random.natural(1, width), random.natural(1, height)};
-            const std::uint64_t sum = sum_around(wide, t, size);
-            if (sum >> 32 != 0)
-                continue;
-            ++compared;
-            if (sum_around(narrow, t, size) != sum)
-                FAIL("about " << t.u << ", " << t.v);
-        }
-        CHECK(compared > 10'000);
-    }
-}
-
 TEST_CASE("rectangles: a constant map never splits, every edge of small maps, any value, every address mode") {
     // 1 fraction bit: whole and half texels, every pair of them
     constexpr std::array<std::pair<std::uint32_t, std::uint32_t>, 7> small{

@@ -195,20 +195,6 @@ TEST_CASE("reversal: Summed Height Test, every edge on maps of 1 to 4 texels a s
     CHECK(yes > edges / 20);
 }
 
-TEST_CASE("reversal: handedness and generation of an inserted vertex, every pair") {
-    for (int a = 0; a < 512; ++a)
-        for (int b = a; b < 512; ++b) {
-            Vertex i, j;
-            i.handedness = a < 256 ? std::int8_t{1} : std::int8_t{-1};
-            j.handedness = b < 256 ? std::int8_t{1} : std::int8_t{-1};
-            i.generation = static_cast<std::uint8_t>(a & 255);
-            j.generation = static_cast<std::uint8_t>(b & 255);
-            if (inserted_handedness(i.handedness, j.handedness) != inserted_handedness(j.handedness, i.handedness) ||
-                inserted_generation(i.generation, j.generation) != inserted_generation(j.generation, i.generation))
-                FAIL(a << ", " << b);
-        }
-}
-
 TEST_CASE("random edges: the same seed gives the same results, and every kind of threshold is met exactly") {
     const EdgeTrial trial = try_random_edges(7, 40'000), again = try_random_edges(7, 40'000);
     INFO(trial.first_fault);

@@ -51,7 +51,7 @@ TrianglePass any_pass(Random& random) {
                               any_texture(random),  static_cast<std::uint16_t>(random.integer(0, 65535)),
                               any_position(random), any_screen(random)};
         pass.edges[k] = {any_texture(random), any_direction(random), any_direction(random), any_direction(random),
-                         static_cast<std::uint8_t>(random.integer(0, 31))};
+                         static_cast<std::uint8_t>(random.integer(0, all_tests))};
     }
     pass.number = random.natural(0, 1000);
     pass.triangle.parent = random.natural(0, 1000);
@@ -62,10 +62,6 @@ TrianglePass any_pass(Random& random) {
     pass.triangle.finished = pass.split == 0;
     return pass;
 }
-
-}  // namespace
-
-namespace {
 
 /// Requires equality with itself, and inequality with every copy in which one field differs.
 template <class Part, class... Fields>
@@ -121,7 +117,7 @@ TEST_CASE("tessellate: children carry complete vertices and the parent's tags") 
             v.displaced_normal = pass.edges[e].displaced_normal;
             v.screen = pass.new_vertex[e].screen;
             if ((pass.split >> e & 1) != 0) {
-                split_by |= pass.edges[e].tests & 3;
+                split_by |= pass.edges[e].tests & requesting_tests;
                 saturated += generation > highest_generation ? 1 : 0;
             }
         }

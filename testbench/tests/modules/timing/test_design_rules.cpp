@@ -79,6 +79,7 @@ TEST_CASE("design rules: each declared member's range is held, both ends include
     CHECK(tried > 200);
 }
 
+// Ranges: above. Here one of them, as the machine says it, and the rules that join several members.
 TEST_CASE("design rules: a machine refuses what would end in a signal, or never end") {
     struct Row {
         std::function<void(Design&)> change;
@@ -87,30 +88,13 @@ TEST_CASE("design rules: a machine refuses what would end in a signal, or never 
     const std::vector<Row> rows{
         {[](Design& d) { d.timing.displace_vertex.interval = 0; },
          "machine: Design::timing.displace_vertex.interval = 0: must be 1 to 1000000 cycles"},
-        {[](Design& d) { d.timing.view_test.buffer = 0; }, "timing.view_test.buffer = 0: must be 1 to 65536 items"},
-        {[](Design& d) { d.timing.tex_coord_test.latency = 0; }, "timing.tex_coord_test.latency = 0: must be 1 to"},
-        {[](Design& d) { d.timing.normal_map.ports = 0; }, "timing.normal_map.ports = 0: must be 1 to 64"},
-        {[](Design& d) { d.timing.normal_map.banks = 0; }, "timing.normal_map.banks = 0: must be 1 to 64"},
         {[](Design& d) {
              d.timing.summed_height_table.banks = 3;
              d.timing.summed_height_table.interleave = Interleave::exclusive_or;
          },
          "Design::timing.summed_height_table.banks = 3: exclusive ORs of column and row number a power of two of banks; "
          "set summed_height_table.banks = 2"},
-        {[](Design& d) { d.timing.summed_height_table.banks = 65; }, "summed_height_table.banks = 65: must be 1 to 64"},
-        {[](Design& d) { d.timing.pass_or_tessellate.buffer = 0; },
-         "pass_or_tessellate.buffer = 0: must be 1 to 65536"},
-        {[](Design& d) { d.timing.results_buffer = 0; }, "timing.results_buffer = 0: must be 1 to 65536 edges"},
-        {[](Design& d) { d.transform_pipelines = 0; }, "Design::transform_pipelines = 0: must be 1 to 16"},
-        {[](Design& d) { d.tests_units = 0; }, "Design::tests_units = 0: must be 1 to 3"},
         {[](Design& d) { d.tests_units = 2; }, "Design::tests_units = 2: a design has 1 Tessellation Tests unit, or 3"},
-        {[](Design& d) { d.tests_units = 4; }, "Design::tests_units = 4: must be 1 to 3"},
-        {[](Design& d) { d.timing.cycle_picoseconds = 0; }, "timing.cycle_picoseconds = 0: must be 1 to 1000000000"},
-        {[](Design& d) {
-             d.timing.off_chip_memory.bandwidth = 0;
-             d.queue.capacity = 4;
-         },
-         "timing.off_chip_memory.bandwidth = 0: must be 1 to 4096 bytes per cycle"},
         {[](Design& d) { d.edge_lanes = 3; },
          "Design::edge_lanes = 3: only the family design with its tests cheapest first has several; set work = "
          "\"family\" and test_order = \"cheap_first\""},
