@@ -49,6 +49,8 @@ CaseResult run_case(const RandomCase& random_case, Mode mode) {
                           static_cast<std::uint64_t>(with_mode.job.limits.cycles_without_progress));
     Scoreboard scoreboard(setup.registers, golden);
     simulation.observe_decisions(scoreboard);
+    TransportCheck transport(setup.registers, setup.base_triangles);
+    observe(simulation, transport);
 
     CaseResult result;
     const auto fail = [&](const std::string& what) { result.failure += (result.failure.empty() ? "" : "\n") + what; };
@@ -74,9 +76,8 @@ CaseResult run_case(const RandomCase& random_case, Mode mode) {
             fmt::format("the machine tested {} edges in {} passes, the scoreboard received {}, the bare datapath "
                         "evaluates {}",
                         totals.counts.edges_tested, passes, conformance.edges, invariants.edges));
-    for (const Conservation& equation : conservation(simulation))
-        if (!equation.holds())
-            fail(fmt::format("{}: {} and {}", equation.name, equation.left, equation.right));
+    if (const WorkResult work = work_result(transport, simulation); !work.passed())
+        fail(fmt::format("{} violations of the work check: {}", work.violations, work.first_violation));
 
     CaseFigures& figures = result.figures;
     figures.runs = 1;

@@ -30,7 +30,7 @@ struct CaseFigures {
 
 struct CaseResult {
     CaseFigures figures;
-    /// Empty: invariants and conformance hold, and the run ended normally.
+    /// Empty: invariants, conformance and work check hold, and the run ended normally.
     std::string failure;
 };
 

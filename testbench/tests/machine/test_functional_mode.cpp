@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "testbench/common/error.h"
+#include "testbench/tests/machine/mesh_keys.h"
 #include "testbench/tests/support/case_table.h"
 #include "testbench/tests/support/checked_run.h"
 #include "testbench/tests/support/job_settings.h"
@@ -35,78 +36,32 @@ void expect_sound(const CheckedRun& run) {
     CHECK(run.pipeline.get_triangle.queue_triangles() == waited);
 }
 
-struct Row {
-    std::string name;
-    std::string settings;
-};
-
 const CaseTable meshes("",
                        {
-                           Row{"half donut: the pipeline's mesh equals the bare datapath's, bit for bit", ""},
-                           {"half donut, last in first out: the same mesh", "hardware.queue_order=lifo"},
+                           SettingsRow{"half donut: the pipeline's mesh equals the bare datapath's, bit for bit", ""},
                            {"half donut, many host triangles at a time: the same mesh",
                             "hardware.queue_watermark=1000"},
-                           {"half donut, memories read by transactions: the same mesh", "hardware.direct_memory=false"},
-                           {"half donut, always the first diagonal", "hardware.triangulation=first"},
                            {"half donut, always the second diagonal", "hardware.triangulation=second"},
-                           {"narrow formats: wide SAT entries, few fraction bits",
-                            "formats.summed_height_bits=44 formats.normal_bits=12 formats.normal_fraction=10 "
-                            "formats.position_bits=24 formats.position_fraction=12 formats.texture_fraction=10 "
-                            "formats.displacement_bits=10"},
                            {"cylinder in repeat: the seam stays closed",
                             "mesh.source=cylinder map.source=noise map.width=64 map.height=33 map.address_u=repeat "
                             "displacement.scale=0.1 tests.view_threshold=8"},
                        },
-                       [](const Row& row) {
+                       [](const SettingsRow& row) {
                            const CheckedRun run(functional_setup(row.settings));
                            expect_sound(run);
                            CHECK(run.mesh.triangles.size() > 1000);
                        });
 
-const CaseTable constant_maps("constant map splits nothing: ",
-                              {
-                                  Row{"plane, clamp", "map.value=0"},
-                                  {"plane, repeat", "map.value=1 map.address_u=repeat map.address_v=repeat"},
-                                  {"cylinder, clamp", "map.value=0.37 mesh.source=cylinder"},
-                                  {"cylinder, repeat", "map.value=1 mesh.source=cylinder map.address_u=repeat"},
-                                  {"sphere, clamp", "map.value=0.5 mesh.source=sphere"},
-                                  {"sphere, repeat", "map.value=0.001 mesh.source=sphere map.address_u=repeat"},
-                              },
-                              [](const Row& row) {
-                                  const CheckedRun run(functional_setup(
-                                      row.settings +
-                                      " map.source=constant map.width=97 map.height=61 tests.summed_height_threshold=0 "
-                                      "tests.view_threshold=0"));
-                                  CHECK(run.mesh.triangles.size() == run.setup.base_triangles.size());
-                                  CHECK(run.counts.edges_split == 0);
-                                  CHECK(run.simulation.rasteriser.triangles() == run.setup.base_triangles.size());
-                              });
-
 }  // namespace
 
-TEST_CASE("half donut, every item through its packed form: the same mesh") {
-    MachineSetup setup = functional_setup();
-    setup.design.packed_streams = true;
-    expect_sound(CheckedRun(setup));
-}
-
-TEST_CASE("reads through DMI and by transactions are counted equally") {
-    const MachineSetup setup = functional_setup("hardware.direct_memory=false");
-    Simulation simulation(setup, 1'000'000);
-    run_to_the_end(simulation);
-    const Pipeline& p = simulation.pipeline;
+TEST_CASE("memories read by transactions: the same mesh, and reads are counted as through DMI") {
+    const CheckedRun run(functional_setup("hardware.direct_memory=false"));
+    const Pipeline& p = run.pipeline;
     CHECK(p.displace_vertex.displacement_map.reads() == p.displacement_map.transactions());
     CHECK(p.normal_map_reads() == p.normal_map.transactions());
     CHECK(p.height_table_reads() == p.height_table.transactions());
     CHECK(p.height_table.transactions() == 12 * p.edges_tested());
-    CHECK(p.displacement_map.transactions() == p.edges_tested() + 3 * setup.base_triangles.size());
-}
-
-TEST_CASE("half donut, culling: Lighting gets fewer triangles, the mesh is complete") {
-    const CheckedRun run(functional_setup("hardware.culling=back camera.eye=[0,-4,0.6]"));
-    expect_sound(run);
-    CHECK(run.counts.culled > 0);
-    CHECK(run.simulation.rasteriser.triangles() > 0);
+    CHECK(p.displacement_map.transactions() == p.edges_tested() + 3 * run.setup.base_triangles.size());
 }
 
 namespace {
@@ -160,24 +115,13 @@ struct Detours : UnitFactory {
     }
 };
 
-}  // namespace
-
-namespace {
-
-struct OvertakingRow {
-    std::string name;
-    std::string settings;
-};
-
 const CaseTable overtaking(
     "functional mode: triangles may overtake one another on every stream, and the mesh is the same, ",
-    {OvertakingRow{"the paper's design", ""},
+    {SettingsRow{"the paper's design", ""},
      {"the cheap tests first",
       "hardware.test_order=cheap_first hardware.final_edges=true hardware.one_texel_from_map=true"},
-     {"families", "hardware.design=modern"},
-     {"a bilinear filter", "hardware.displacement_filter=bilinear"},
      {"a bilinear filter, families", "hardware.displacement_filter=bilinear hardware.design=modern"}},
-    [](const OvertakingRow& row) {
+    [](const SettingsRow& row) {
         Detours detours;
         // many at a time, so that host and queue send concurrently
         const CheckedRun run(functional_setup("hardware.queue_watermark=1000 " + row.settings), &detours);

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "testbench/benchmark/gouraud_error.h"
+#include "testbench/tests/support/bare_mesh.h"
 #include "testbench/tests/support/case_table.h"
 #include "testbench/tests/support/checked_run.h"
 #include "testbench/tests/support/edited_mesh.h"
@@ -26,27 +27,21 @@ Job functional_job() {
     return job;
 }
 
-struct Row {
-    std::string name;
-    std::string settings;
-};
-
 /// Meshes in which some edges are split by HT alone.
 const CaseTable meshes(
     "Highlight Test: ",
     {
-        Row{"half donut, functional, conforms", "mode=functional"},
         // with thresholds that leave edges to the Highlight Test
-        {"noisy sphere, narrow normals, functional, conforms",
-         "mode=functional mesh.source=sphere mesh.columns=24 mesh.rows=12 map.source=noise "
-         "map.address_u=repeat displacement.scale=0.02 formats.normal_bits=12 formats.normal_fraction=10 "
-         "tests.summed_height_threshold=2 tests.view_threshold=2"},
+        SettingsRow{"noisy sphere, narrow normals, functional, conforms",
+                    "mode=functional mesh.source=sphere mesh.columns=24 mesh.rows=12 map.source=noise "
+                    "map.address_u=repeat displacement.scale=0.02 formats.normal_bits=12 formats.normal_fraction=10 "
+                    "tests.summed_height_threshold=2 tests.view_threshold=2"},
         {"half donut, timed, conforms", "mode=timed"},
         {"three tests units, stalls, and a queue that spills its bit, timed, conforms",
          "mode=timed hardware.tests_units=3 hardware.queue_capacity=20 timing.summed_height_table_ports=4 "
          "timing.stalls_seed=5 timing.stalls_per_mille=300"},
     },
-    [](const Row& row) {
+    [](const SettingsRow& row) {
         const CheckedRun run(with_settings(with_highlight({}), row.settings));
         CHECK(run.conformance.passed(0.5));
         const auto& counts = run.simulation.decisions.counts();
