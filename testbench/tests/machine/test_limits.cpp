@@ -16,21 +16,12 @@ namespace {
 /// A few hundred triangles of all sizes.
 const std::string small = "map.width=32 map.height=32 tests.summed_height_threshold=0.3 tests.generation_limit=5 ";
 
-std::string stalls(int seed, int per_mille, int longest) {
-    return "timing.stalls_seed=" + std::to_string(seed) + " timing.stalls_per_mille=" + std::to_string(per_mille) +
-           " timing.stalls_longest=" + std::to_string(longest) + " ";
-}
-
 std::string all_memories(int latency) {
     return every_table("latency", latency) + "timing.off_chip_latency=" + std::to_string(latency) + " ";
 }
 
 std::string all_units(int latency, int interval, int buffer) {
     return every_unit("latency", latency) + every_unit("interval", interval) + every_unit("buffer", buffer);
-}
-
-std::string queue(const std::string& order, int capacity) {
-    return "hardware.queue_order=" + order + " hardware.queue_capacity=" + std::to_string(capacity) + " ";
 }
 
 struct Row {
@@ -49,13 +40,13 @@ const CaseTable designs(
     "limits: ",
     {
         Row{"one place in the queue, all channels stalling, memories of latency 0",
-            queue("fifo", 1) + stalls(101, 400, 20) + all_memories(0)},
+            bounded_queue("fifo", 1) + random_stalls(101, 400, 20) + all_memories(0)},
         {"one place in the queue, newest first, all channels stalling, memories of latency 1000",
-         queue("lifo", 1) + stalls(102, 300, 20) + all_memories(1000)},
+         bounded_queue("lifo", 1) + random_stalls(102, 300, 20) + all_memories(1000)},
         {"two places in the queue, all channels always stalling, memories of latency 1",
-         queue("fifo", 2) + stalls(103, 1000, 50) + all_memories(1)},
+         bounded_queue("fifo", 2) + random_stalls(103, 1000, 50) + all_memories(1)},
         {"two places in the queue, newest first, three tests units, stalls, one place in every buffer",
-         queue("lifo", 2) + stalls(104, 500, 9) + every_unit("buffer", 1) +
+         bounded_queue("lifo", 2) + random_stalls(104, 500, 9) + every_unit("buffer", 1) +
              "hardware.tests_units=3 hardware.transform_pipelines=16 timing.results_buffer=1 "
              "timing.off_chip_buffer=1"},
         // edges do not wait for one another's reads: at least one edge's own
@@ -66,12 +57,13 @@ const CaseTable designs(
         {"a normal map of latency 1000, other memories of latency 0",
          all_memories(0) + "timing.normal_map_latency=1000", 1000},
         {"off-chip memory of latency 1000, one byte per cycle, one request at a time",
-         queue("fifo", 1) + "timing.off_chip_latency=1000 timing.off_chip_bandwidth=1 timing.off_chip_buffer=1"},
+         bounded_queue("fifo", 1) +
+             "timing.off_chip_latency=1000 timing.off_chip_bandwidth=1 timing.off_chip_buffer=1"},
         {"every latency and interval 1", all_units(1, 1, 1) + all_memories(0) +
                                              "timing.summed_height_table_ports=64 timing.summed_height_table_banks=64"},
         // at least Transform: one part after another, 1000 cycles each
         {"every latency and interval 1000, stalls",
-         "tests.generation_limit=2 " + all_units(1000, 1000, 1) + stalls(105, 200, 1000), 100'000},
+         "tests.generation_limit=2 " + all_units(1000, 1000, 1) + random_stalls(105, 200, 1000), 100'000},
         {"narrow memories, one byte per cycle", every_table("width", 1)},
         {"the longest clock period and latencies",
          "tests.generation_limit=1 timing.clock_period=1000000000 " + all_units(1'000'000, 1'000'000, 1)},
@@ -85,7 +77,7 @@ const CaseTable designs(
 const CaseTable whole("limits: ",
                       {
                           Row{"nothing to split, one place in the queue, stalls",
-                              "map.source=constant " + queue("fifo", 1) + stalls(106, 1000, 100)},
+                              "map.source=constant " + bounded_queue("fifo", 1) + random_stalls(106, 1000, 100)},
                           {"no test requests a split", "tests.normal=false tests.summed_height=false"},
                           {"a generation limit of 0", "tests.generation_limit=0"},
                           {"a map of one texel", "map.width=1 map.height=1"},

@@ -135,20 +135,3 @@ TEST_CASE("limits: cameras without a valid view are refused with the names of bo
         },
         [](const std::string& settings) { return outcome_of(with_settings(small_job(), settings)); });
 }
-
-TEST_CASE("limits: a near plane that is not in front and invalid angles are out of range") {
-    expect_refusals(
-        {
-            {"camera.near_plane=0", {"camera.near_plane", "range"}},
-            {"camera.near_plane=-0.1", {"camera.near_plane"}},
-            {"camera.field_of_view=0", {"camera.field_of_view", "0.1 .. 179"}},
-            {"camera.field_of_view=180", {"camera.field_of_view"}},
-            {"camera.viewport_width=0", {"camera.viewport_width"}},
-            {"camera.eye=[0, nan, 0]", {"camera.eye", "not a finite number"}},
-            {"displacement.scale=inf", {"displacement.scale"}},
-        },
-        [](const std::string& setting) {
-            Job job;
-            return input_error_of([&] { apply_setting(job, setting); });
-        });
-}

@@ -18,8 +18,8 @@
 #include "testbench/tests/support/job_settings.h"
 #include "testbench/tests/support/source_folder.h"
 
-// Every height test on base meshes of every kind, in both designs and modes: closed, the bare recursion's mesh bit for
-// bit, every decision golden's within its bound. The set-up reports what the Rank Test cannot do.
+// Every height test on base meshes of every kind, in one of both designs and modes: closed, the bare recursion's mesh bit
+// for bit, every decision golden's within its bound. The set-up reports what the Rank Test cannot do.
 
 using namespace tessera;
 using namespace tessera::testing;
@@ -192,16 +192,17 @@ struct Row {
     Named test, design;
 };
 
-std::vector<Row> every_combination() {
+/// Each test on each base mesh once, each base mesh and each test in every design.
+std::vector<Row> every_pair() {
     std::vector<Row> rows;
-    for (const Base& base : bases) {
-        for (const Named& test : height_tests)
-            for (const Named& design : designs)
-                rows.push_back({base.name + ", " + test.name + ", " + design.name, &base, test, design});
-    }
+    for (std::size_t b = 0; b < bases.size(); ++b)
+        for (std::size_t t = 0; t < height_tests.size(); ++t) {
+            const Named &test = height_tests[t], &design = designs[(b + t) % designs.size()];
+            rows.push_back({bases[b].name + ", " + test.name + ", " + design.name, &bases[b], test, design});
+        }
     return rows;
 }
 
-const CaseTable all("on ", every_combination(), [](const Row& row) { run_on(*row.base, row.test, row.design); });
+const CaseTable all("on ", every_pair(), [](const Row& row) { run_on(*row.base, row.test, row.design); });
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "modules/timing/all_units.h"
 #include "testbench/check/transport/conservation.h"
 #include "testbench/machine/inputs.h"
 #include "testbench/machine/simulation.h"
@@ -76,10 +77,9 @@ inline void require_cycles_add_up(const Unit& unit, std::uint64_t cycles) {
 /// The longest interval of a unit; the last item's may extend beyond the run's end.
 inline std::uint64_t longest_interval(const Timing& t) {
     std::uint64_t longest = 1;
-    for (const UnitTiming& unit : {t.get_triangle, t.calculate_new_p, t.displace_vertex, t.transform, t.calculate_new_u,
-                                   t.tex_coord_test, t.height_test, t.normal_test, t.view_test, t.pass_or_tessellate,
-                                   t.tessellation, t.triangle_queue, t.lighting})
-        longest = std::max<std::uint64_t>(longest, unit.interval);
+    for (const UnitSpec& unit : all_units)
+        if (unit.timing != nullptr)
+            longest = std::max<std::uint64_t>(longest, (t.*unit.timing).interval);
     return longest;
 }
 
