@@ -58,13 +58,20 @@ std::vector<Formats> formats_to_try() {
     return all;
 }
 
-/// No width may be too small; in the default formats none may exceed the need by more than one bit.
-void check(const char* function, const Width& width, const Reach& reach, bool tight) {
-    INFO(function << ": " << width.name << " has " << width.bits << " bits, " << reach.bits() << " are needed");
-    CHECK(reach.bits() <= width.bits);
-    CHECK(width.bits <= width.most);
-    if (tight)
-        CHECK(width.bits <= reach.bits() + 1);
+/// No width of a function, in the order of all(), may be too small; in the default formats none may exceed the need by
+/// more than one bit.
+template <class Widths>
+void check(const char* function, const Widths& widths, const std::vector<Reach>& reaches, bool tight) {
+    const auto all = widths.all();
+    REQUIRE(all.size() == reaches.size());
+    for (std::size_t k = 0; k < all.size(); ++k) {
+        const int needed = reaches[k].bits();
+        INFO(function << ": " << all[k].name << " has " << all[k].bits << " bits, " << needed << " are needed");
+        CHECK(needed <= all[k].bits);
+        CHECK(all[k].bits <= all[k].most);
+        if (tight)
+            CHECK(all[k].bits <= needed + 1);
+    }
 }
 
 Wide one(const Formats& f) {
@@ -90,11 +97,7 @@ void check_displace(const Formats& f, bool tight) {
                     step.see(nearest(h * n, f.normal.fraction));
                     sum.see(p + nearest(h * n, f.normal.fraction));
                 }
-    check("displace", widths.product, product, tight);
-    check("displace", widths.height, height, tight);
-    check("displace", widths.along, along, tight);
-    check("displace", widths.step, step, tight);
-    check("displace", widths.sum, sum, tight);
+    check("displace", widths, {product, height, along, step, sum}, tight);
 }
 
 /// The corners of the operands' range of codes and normals' components; all other values lie between them.
@@ -115,12 +118,7 @@ void check_bilinear(const Formats& f, bool tight) {
                 product.see((b - a) * one * (one - 1));
                 sum.see(a * one * one + (b - a) * one * (one - 1) + one * one / 2);
             }
-    check("interpolate", widths.place, place, tight);
-    check("interpolate", widths.columns, columns, tight);
-    check("interpolate", widths.row, row, tight);
-    check("interpolate", widths.rows, rows, tight);
-    check("interpolate", widths.product, product, tight);
-    check("interpolate", widths.sum, sum, tight);
+    check("interpolate", widths, {place, columns, row, rows, product, sum}, tight);
 }
 
 void check_bump(const Formats& f, bool tight) {
@@ -136,11 +134,7 @@ void check_bump(const Formats& f, bool tight) {
         sum.see(all + half(bump_shift(f)));
         combined.see(nearest(all, bump_shift(f)));
     }
-    check("bump", widths.cross, cross, tight);
-    check("bump", widths.bitangent, bitangent, tight);
-    check("bump", widths.product, product, tight);
-    check("bump", widths.sum, sum, tight);
-    check("bump", widths.combined, combined, tight);
+    check("bump", widths, {cross, bitangent, product, sum, combined}, tight);
 
     const NormaliseWidths normalise_widths(f, widths.combined.bits);
     Reach square, root, scaled;
@@ -149,9 +143,7 @@ void check_bump(const Formats& f, bool tight) {
     root.see(reciprocal_root(1u << 30));
     scaled.see(component * reciprocal_root(1u << 30));
     scaled.see(-component * reciprocal_root(1u << 30));
-    check("normalise", normalise_widths.square, square, tight);
-    check("normalise", normalise_widths.root, root, tight);
-    check("normalise", normalise_widths.product, scaled, tight);
+    check("normalise", normalise_widths, {square, root, scaled}, tight);
 }
 
 void check_transform(const Formats& f, bool tight) {
@@ -168,23 +160,29 @@ void check_transform(const Formats& f, bool tight) {
         numerator.see(kept);
         quotient.see(kept * reciprocal(1u << 31) + half(62));
     }
-    Reach inverse;
+    Reach inverse, mantissa;
+    mantissa.see(0xffffffff);
     inverse.see(reciprocal(1u << 31));
-    check("transform", widths.product, product, tight);
-    check("transform", widths.sum, sum, tight);
-    check("transform", widths.w, w, tight);
-    check("transform", widths.inverse, inverse, tight);
-    check("transform", widths.numerator, numerator, tight);
-    check("transform", widths.quotient, quotient, tight);
+    check("transform", widths, {product, sum, w, mantissa, inverse, numerator, quotient}, tight);
+}
+
+/// A map of the greatest size, repeated.
+MapGeometry largest_map(const Formats& f) {
+    const std::uint32_t size = 1u << (f.texture.bits - 1) >> f.texture.fraction;
+    return {size, size, AddressMode::repeat, AddressMode::repeat};
+}
+RectangleSize largest_rectangle(const Formats& f) {
+    const std::uint32_t border = 1u << (f.texture.bits - 1);
+    return rectangle_size({}, {border, border}, largest_map(f), f);
 }
 
 void check_rectangle(const Formats& f, bool tight) {
     const RectangleWidths widths{f};
-    const std::uint32_t border = 1u << (f.texture.bits - 1), size = border >> f.texture.fraction;
-    const MapGeometry map{size, size, AddressMode::repeat, AddressMode::repeat};
-    const TexCoord zero, farthest{border, border}, last{border - 1, border - 1};
-    const RectangleSize largest = rectangle_size(zero, farthest, map, f);
-    Reach difference, width, height, first, end, area, limit;
+    const MapGeometry map = largest_map(f);
+    const std::uint32_t border = 1u << (f.texture.bits - 1), size = map.width;
+    const TexCoord last{border - 1, border - 1};
+    const RectangleSize largest = largest_rectangle(f);
+    Reach difference, width, height, first, end, sum;
     difference.see(border);
     width.see(largest.width);
     height.see(largest.height);
@@ -193,26 +191,20 @@ void check_rectangle(const Formats& f, bool tight) {
     end.see(centred_rectangle(last, largest, map, f).last_column);
     end.see(centred_rectangle(last, {1, 1}, map, f).last_column);
     end.see(Wide{size} - 1 + largest.width);
-    check("rectangle_size", widths.difference, difference, tight);
-    check("rectangle_size", widths.width, width, tight);
-    check("rectangle_size", widths.height, height, tight);
-    check("rectangle_size", widths.first, first, tight);
-    check("rectangle_size", widths.last, end, tight);
+    sum.see(f.summed_height.highest);
+    check("rectangle_size", widths, {difference, width, height, first, end, sum}, tight);
+}
 
-    const EdgeTestWidths edge{f};
+void check_edge_tests(const Formats& f, bool tight) {
+    const EdgeTestWidths widths{f};
+    Reach normal, sums, area, limit, screen, length, index, product, cosine;
+    const RectangleSize largest = largest_rectangle(f);
     area.see(Wide{largest.width} * largest.height);
     limit.see(Wide{1} << 50);
     TestParameters by_area;
     by_area.summed_height_unit = SummedHeightUnit::area;
     by_area.height_thresholds[0] = 1u << 18;
     limit.see(summed_height_limit(largest, by_area));
-    check("edge tests", edge.area, area, tight);
-    check("edge tests", edge.limit, limit, tight);
-}
-
-void check_edge_tests(const Formats& f, bool tight) {
-    const EdgeTestWidths widths{f};
-    Reach normal, sums, screen, length, index, product, cosine;
     normal.see(absolute_difference(f.normal.lowest, f.normal.highest));
     sums.see(2 * Wide{f.summed_height.highest});
     screen.see(absolute_difference(f.screen.lowest, f.screen.highest));
@@ -223,20 +215,13 @@ void check_edge_tests(const Formats& f, bool tight) {
         product.see(term);
         cosine.see(3 * term);
     }
-    check("edge tests", widths.normal, normal, tight);
-    check("edge tests", widths.sums, sums, tight);
-    check("edge tests", widths.screen, screen, tight);
-    check("edge tests", widths.length, length, tight);
-    check("edge tests", widths.index, index, tight);
-    check("edge tests", widths.product, product, tight);
-    check("edge tests", widths.cosine, cosine, tight);
+    check("edge tests", widths, {normal, sums, area, limit, screen, length, index, product, cosine}, tight);
 
     const TransformNormalWidths rotation{f};
     Reach sum;
     for (const Wide term : {least, most})
         sum.see(3 * term + half(f.normal.fraction));
-    check("transform_normal", rotation.product, product, tight);
-    check("transform_normal", rotation.sum, sum, tight);
+    check("transform_normal", rotation, {product, sum}, tight);
 
     const LightWidths light_widths{f};
     Reach lit, scaled, intensity;
@@ -244,11 +229,7 @@ void check_edge_tests(const Formats& f, bool tight) {
     scaled.see(256 * lit.high);
     intensity.see(scaled.high >> f.normal.fraction);
     intensity.see(256 + ((256 - 256) * lit.high >> f.normal.fraction));
-    check("light", light_widths.product, product, tight);
-    check("light", light_widths.dot, cosine, tight);
-    check("light", light_widths.cosine, lit, tight);
-    check("light", light_widths.scaled, scaled, tight);
-    check("light", light_widths.intensity, intensity, tight);
+    check("light", light_widths, {product, cosine, lit, scaled, intensity}, tight);
 }
 
 void check_the_rest(const Formats& f, bool tight) {
@@ -261,24 +242,19 @@ void check_the_rest(const Formats& f, bool tight) {
         direction.see(2 * Wide{k == 0 ? f.normal.lowest : f.normal.highest});
     }
     texture.see(2 * (Wide{1} << (f.texture.bits - 1)));
-    check("midpoint", middle.position, position, tight);
-    check("midpoint", middle.direction, direction, tight);
-    check("midpoint", middle.texture, texture, tight);
+    check("midpoint", middle, {position, direction, texture}, tight);
 
     side.see(absolute_difference(f.position.lowest, f.position.highest));
     length.see(3 * side.high);
     compared.see(64 * length.high);
-    check("choose_second_diagonal", diagonal.difference, side, tight);
-    check("choose_second_diagonal", diagonal.length, length, tight);
-    check("choose_second_diagonal", diagonal.compared, compared, tight);
+    check("choose_second_diagonal", diagonal, {side, length, compared}, tight);
 
     const Wide across = Wide{f.screen.highest} - f.screen.lowest;
     for (const Wide sign : {-1, 1}) {
         difference.see(sign * across);
         product.see(sign * across * across);
     }
-    check("faces_away", cull.difference, difference, tight);
-    check("faces_away", cull.product, product, tight);
+    check("faces_away", cull, {difference, product}, tight);
 }
 
 void check_filtered_tests(const Formats& f, bool tight) {
@@ -297,19 +273,11 @@ void check_filtered_tests(const Formats& f, bool tight) {
     deviation.see(measure.high >> (largest_curvature_exponent + level));
     const auto code = static_cast<std::uint32_t>(f.displacement.highest);
     codes.see(static_cast<Wide>(curvature_measure_of_codes(0, 0, code)));
-    check("curvature_measure", widths.difference, difference, tight);
-    check("curvature_measure", widths.eighths, eighths, tight);
-    check("curvature_measure", widths.step, step, tight);
-    check("curvature_measure", widths.product, product, tight);
-    check("curvature_measure", widths.bend, bend, tight);
-    check("curvature_measure", widths.deviation, deviation, tight);
-    check("curvature_measure", widths.measure, measure, tight);
-    check("curvature_measure", widths.codes, codes, tight);
+    check("curvature_measure", widths, {difference, eighths, step, product, bend, deviation, measure, codes}, tight);
 
     Reach heights;
     heights.see(2 * Wide{code});
-    check("mipmap_test", MipmapWidths{f}.difference, difference, tight);
-    check("mipmap_test", MipmapWidths{f}.heights, heights, tight);
+    check("mipmap_test", MipmapWidths{f}, {difference, heights}, tight);
 }
 
 /// The Rank Test's view part, with the eye in a corner of its range and the position in the opposite one.
@@ -331,17 +299,8 @@ void check_rank_view(const Formats& f, bool tight) {
     rank.see((Wide{1} << FormatLimits::rank_bits.most) - 1);
     limit.see(-(Wide{1} << (rank_limit_bits - 1)));
     limit.see((Wide{1} << (rank_limit_bits - 1)) - 1 + level.high);
-    check("rank_test_in_view", widths.away, away, tight);
-    check("rank_test_in_view", widths.pair, pair, tight);
-    check("rank_test_in_view", widths.three, three, tight);
-    check("rank_test_in_view", widths.times_11, times_11, tight);
-    check("rank_test_in_view", widths.times_9, times_9, tight);
-    check("rank_test_in_view", widths.ends, ends, tight);
-    check("rank_test_in_view", widths.radius, radius, tight);
-    check("rank_test_in_view", widths.deepest, deepest, tight);
-    check("rank_test_in_view", widths.level, level, tight);
-    check("rank_test_in_view", widths.rank, rank, tight);
-    check("rank_test_in_view", widths.limit, limit, tight);
+    check("rank_test_in_view", widths,
+          {away, pair, three, times_11, times_9, ends, radius, deepest, level, rank, limit}, tight);
 }
 
 }  // namespace
@@ -396,17 +355,9 @@ TEST_CASE("intermediates: Newton steps over the range of their operands") {
         }
     }
     const ReciprocalRootWidths root{Formats{}};
-    check("reciprocal_root", root.mantissa, root_m, true);
-    check("reciprocal_root", root.root, y, true);
-    check("reciprocal_root", root.square, square, true);
-    check("reciprocal_root", root.product, root_product, true);
-    check("reciprocal_root", root.step, root_step, true);
+    check("reciprocal_root", root, {root_m, y, square, root_product, root_step}, true);
     const ReciprocalWidths inverse{Formats{}};
-    check("reciprocal", inverse.mantissa, m, true);
-    check("reciprocal", inverse.reciprocal, r, true);
-    check("reciprocal", inverse.product, product, true);
-    check("reciprocal", inverse.correction, correction, true);
-    check("reciprocal", inverse.step, step, true);
+    check("reciprocal", inverse, {m, r, product, correction, step}, true);
 }
 
 TEST_CASE("intermediates: every legal format fits the model's integers, and the first misfit of a wider one is named") {
