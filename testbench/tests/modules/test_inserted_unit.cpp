@@ -77,31 +77,5 @@ TEST_CASE("pass-through: one triangle takes 92 cycles instead of 86") {
     CHECK(activity.items_out() == 9);
     CHECK(activity.item_cycles() == 9 * PassThrough::timing.latency);
     CHECK(activity.cycles_in(State::blocked) == 0);
-}
-
-// Bound by the Summed Height Table (test_throughput.cpp): 5 + 3 + 36 a pass + 9. Its only pause, while the first
-// triangle's third edge waits for Transform, is 6 instead of 3. The last pass needs no normals: no more at the end.
-TEST_CASE("pass-through: the default job takes three more cycles") {
-    const MachineSetup setup = setup_of(timed_job());
-    PassThroughUnits units;
-    NamedMachine machine("machine", setup, &units);
-    sc_core::sc_start();
-    const std::uint64_t passes = machine.pipeline.pass_or_tessellate.counts().passes;
-    CHECK(passes == 19'700);
-    CHECK(machine.cycles() == 5 + 6 + 36 * passes + 9);  // 709,220
-    CHECK(units.inserted().activity().items_out() == machine.pipeline.get_triangle.parts_sent());
     expect_bare_mesh(machine);
-}
-
-TEST_CASE("pass-through: the same mesh in both modes") {
-    const MachineSetup timed_setup = setup_of(full_split_job(2, 2));
-    Job job = full_split_job(2, 2);
-    job.mode = Mode::functional;
-    const MachineSetup functional_setup = setup_of(job);
-    PassThroughUnits timed_units, functional_units;
-    NamedMachine timed("timed", timed_setup, &timed_units);
-    NamedMachine functional("functional", functional_setup, &functional_units);
-    sc_core::sc_start();
-    expect_bare_mesh(timed);
-    expect_bare_mesh(functional);
 }

@@ -174,49 +174,6 @@ const CaseTable families(
 
 }  // namespace
 
-// The units' figures in their headers, on which the sums above rest. The figures of the tests would not check the
-// defaults of units off the critical path.
-TEST_CASE("the paper's design: latency, interval and buffer of every unit and memory") {
-    const Timing t;
-    struct Default {
-        const char* name;
-        UnitTiming is;
-        unsigned latency, buffer;
-    };
-    for (const Default& unit : {Default{"get_triangle", t.get_triangle, 1, 1},
-                                {"calculate_new_p", t.calculate_new_p, 1, 1},
-                                {"displace_vertex", t.displace_vertex, 6, 1},
-                                {"transform", t.transform, 20, 1},
-                                {"calculate_new_u", t.calculate_new_u, 1, 1},
-                                {"tex_coord_test", t.tex_coord_test, 1, 1},
-                                {"height_test", height_test_timing(t, {}), 3, 1},
-                                {"normal_test", t.normal_test, 9, 1},
-                                {"view_test", t.view_test, 1, 1},
-                                {"pass_or_tessellate", t.pass_or_tessellate, 1, 8},
-                                {"tessellation", t.tessellation, 1, 1},
-                                {"triangle_queue", t.triangle_queue, 1, 1},
-                                {"lighting", t.lighting, 4, 1}}) {
-        INFO(unit.name);
-        CHECK(unit.is.latency == unit.latency);
-        CHECK(unit.is.interval == 1);
-        CHECK(unit.is.buffer == unit.buffer);
-    }
-    for (const MemoryTiming& memory : {t.displacement_map, t.normal_map, t.summed_height_table}) {
-        CHECK(memory.ports == 1);
-        CHECK(memory.banks == 1);
-        CHECK(memory.latency == 1);
-        CHECK(memory.width == 0);
-        CHECK(memory.buffer == 1);
-    }
-    CHECK(t.cycle_picoseconds == 5000);
-    CHECK(t.highlight_test_latency == 1);
-    CHECK(t.results_buffer == 4);
-    CHECK(t.off_chip_memory.latency == 40);
-    CHECK(t.off_chip_memory.bandwidth == 16);
-    CHECK(t.off_chip_memory.buffer == 4);
-    CHECK(t.stalls.per_mille == 0);
-}
-
 // Each unit with a latency of its own, all different: what is forgotten or counted twice shows.
 // V = 3 + 2 + 5 + 7 + 11 + 40 = 68, A = 3 + 2 + 2 + 4 = 11,
 // W = 68 (edge 2 waits at the end of Calculate New U), S = 68,

@@ -91,16 +91,12 @@ struct Drained {
 const CaseTable<Drained> drained(
     "drained: notified once for each frame, when all of it is lit: ",
     {
-        {"timed", "mode=timed"},
-        {"timed, three Tessellation Tests units", "mode=timed hardware.tests_units=3"},
-        {"timed, random stalls", "mode=timed timing.stalls_seed=3 timing.stalls_per_mille=300 timing.stalls_longest=9"},
+        {"timed, three Tessellation Tests units, random stalls",
+         "mode=timed hardware.tests_units=3 " + random_stalls(3, 300, 9)},
         {"timed, modern design", "mode=timed hardware.design=modern"},
-        {"timed, a queue that spills", "mode=timed hardware.queue_capacity=4"},
-        {"timed, two machines", "mode=timed", 2},
-        {"functional", "mode=functional"},
-        {"functional, modern design", "mode=functional hardware.design=modern"},
+        {"timed, a queue that spills, two machines", "mode=timed hardware.queue_capacity=4", 2},
         {"functional, watermark 8", "mode=functional hardware.queue_watermark=8"},
-        {"functional, three machines", "mode=functional", 3},
+        {"functional, modern design, three machines", "mode=functional hardware.design=modern", 3},
     },
     [](const Drained& row) {
         MachineSetup setup = setup_of(with_settings(full_split_job(2, 2), row.settings));
@@ -130,8 +126,7 @@ const CaseTable stopped(
     "contents of units described in every cycle: ",
     {
         Row{"the paper's design, random stalls",
-            "timing.stalls_seed=3 timing.stalls_per_mille=300 timing.stalls_longest=9 "
-            "hardware.queue_capacity=2",
+            random_stalls(3, 300, 9) + "hardware.queue_capacity=2",
             {{"get_triangle", "partly sent"},
              {"get_triangle", "not accepted because the queue is at its watermark"},
              {"pass_or_tessellate", "waiting for both branches"},
@@ -155,8 +150,7 @@ const CaseTable stopped(
          "timing.transform_latency=300 timing.transform_interval=90",
          {{"pass_or_tessellate", "waiting for Transform"}, {"get_triangle", "a host triangle"}}},
         {"cheap tests first, random stalls",
-         "hardware.test_order=cheap_first tests.normal_threshold=1 timing.stalls_seed=3 "
-         "timing.stalls_per_mille=300 timing.stalls_longest=9",
+         "hardware.test_order=cheap_first tests.normal_threshold=1 " + random_stalls(3, 300, 9),
          {{"sequence_tests", "the oldest waits for the Normal Test to take it"},
           {"sequence_tests", "the oldest waits for the Summed Height Test"},
           {"sequence_tests", "the oldest waits for Pass or Tessellate to take it"},
@@ -164,8 +158,8 @@ const CaseTable stopped(
           {"sequence_tests", "from calculate_new_u for summed_height_test"},
           {"sequence_tests", "from view_test"}}},
         {"families, three lanes, random stalls",
-         "hardware.work=family hardware.test_order=cheap_first hardware.edge_lanes=3 tests.normal_threshold=1 "
-         "timing.stalls_seed=3 timing.stalls_per_mille=300 timing.stalls_longest=9",
+         "hardware.work=family hardware.test_order=cheap_first hardware.edge_lanes=3 tests.normal_threshold=1 " +
+             random_stalls(3, 300, 9),
          {{"tessellation", ", waiting for parts"},
           {"tessellation", ", complete"},
           {"tessellation", ", partly sent"},

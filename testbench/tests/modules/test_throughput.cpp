@@ -65,6 +65,8 @@ const Unit& unit_named(const Pipeline& pipeline, const std::string& name) {
     return **std::find_if(units.begin(), units.end(), [&](const Unit* unit) { return unit->basename() == name; });
 }
 
+constexpr std::uint64_t any = 0;
+
 /// Limits of the run's cycles, and the number of cycles for which one unit is occupied.
 struct Bound {
     std::string name;
@@ -141,6 +143,19 @@ const CaseTable rates(
          303 * splits + 9 * finished + 500, "tessellation", 303 * splits, true},
         {"Get Triangle every 100 cycles is the bottleneck: 100 cycles a part", "timing.get_triangle_interval=100",
          100 * (parts - 1), 100 * parts + 1000, "get_triangle", 100 * parts, true},
+        {"Get Triangle of latency 200 is the bottleneck: 200 cycles a pass", "timing.get_triangle_latency=200",
+         200 * passes, 250 * passes, "get_triangle", any, true},
+        // The corners' banks are arbitrary: four banks are no better than four ports and, with one port each, no worse
+        // than one. Without conflicts eight would read a pass's 36 entries in 4.5 cycles.
+        {"four banks of the Summed Height Table are faster than one port and slower than four",
+         "timing.summed_height_table_banks=4", fill + 9 * passes + drain, fill + 3 + 36 * passes + drain,
+         "summed_height_table", any},
+        {"eight banks interleaved by entry: more than eight cycles a pass", "timing.summed_height_table_banks=8",
+         8 * passes, 9 * passes, "summed_height_table", any},
+        {"eight exclusive-or banks, a window of four edges: less than seven cycles a pass",
+         "timing.summed_height_table_banks=8 timing.summed_height_table_interleave=xor "
+         "timing.summed_height_table_window=12",
+         9 * passes / 2, 7 * passes, "summed_height_table", any},
     },
     [](const Bound& row) {
         FullSplitRun simulation(row.settings);
@@ -149,8 +164,9 @@ const CaseTable rates(
         const Pipeline& p = simulation.pipeline;
         CHECK(p.tessellation.children() == passes - base);
         const Unit& unit = unit_named(p, row.unit);
-        CHECK(unit.occupied_cycles() == row.occupied);
-        if (&unit == &p.height_table)
+        if (row.occupied != any)
+            CHECK(unit.occupied_cycles() == row.occupied);
+        if (&unit == &p.height_table && row.occupied != any)
             CHECK(unit.activity().cycles_in(State::busy) == row.occupied);
         if (&unit == &p.transform)  // ceil(20 / 8) register stages in each
             CHECK(unit.activity().high_water_mark() == 3 * simulation.setup.design.transform_pipelines);
@@ -229,13 +245,6 @@ TEST_CASE("the paper's design is bound by the Summed Height Table: 36 cycles a p
     CHECK(test.cycles_in(State::blocked) == 0);
 }
 
-TEST_CASE("half donut, the paper's design: 36 cycles a pass") {
-    TimedRun simulation(setup_of(timed_job()));
-    const std::uint64_t its_passes = simulation.pipeline.pass_or_tessellate.counts().passes;
-    CHECK(its_passes > 10'000);
-    CHECK(simulation.cycles() == fill + 3 + 36 * its_passes + drain);
-}
-
 TEST_CASE("two machines of the paper's design: each does half the passes, in half the cycles") {
     TimedRun simulation(full_split("hardware.machines=2"));
     REQUIRE(simulation.machines.size() == 2);
@@ -254,35 +263,6 @@ TEST_CASE("two machines of the paper's design: each does half the passes, in hal
     CHECK(totals.queued == totals.queue_triangles);
     CHECK(totals.height_table_reads == 36 * passes);
     CHECK(simulation.monitor.mesh.triangles.size() == finished);
-}
-
-// Four banks instead: the corners' banks are arbitrary, so no better than four ports, and with one port each no worse
-// than one.
-TEST_CASE("four banks of the Summed Height Table are faster than one port and slower than four") {
-    FullSplitRun simulation("timing.summed_height_table_banks=4");
-    CHECK(simulation.cycles() > fill + 9 * passes + drain);
-    CHECK(simulation.cycles() < fill + 3 + 36 * passes + drain);
-}
-
-// Without conflicts eight banks would read an edge's 12 entries in 1.5 cycles, a pass's in 4.5; four ports take 9.
-TEST_CASE("eight banks interleaved by entry: more than eight cycles a pass") {
-    FullSplitRun simulation("timing.summed_height_table_banks=8");
-    CHECK(simulation.cycles() > 8 * passes);
-    CHECK(simulation.cycles() < 9 * passes);
-}
-
-TEST_CASE("eight exclusive-or banks, a window of four edges: less than seven cycles a pass") {
-    FullSplitRun simulation(
-        "timing.summed_height_table_banks=8 timing.summed_height_table_interleave=xor "
-        "timing.summed_height_table_window=12");
-    CHECK(2 * simulation.cycles() > 9 * passes);
-    CHECK(simulation.cycles() < 7 * passes);
-}
-
-TEST_CASE("Get Triangle of latency 200 is the bottleneck: 200 cycles a pass") {
-    FullSplitRun simulation("timing.get_triangle_latency=200");
-    CHECK(simulation.cycles() >= 200 * passes);
-    require_sole_bottleneck(simulation, &simulation.pipeline.get_triangle);
 }
 
 // Eight triangles may be in flight at the join, so at most one per 400 / 8 cycles, where the tests take nine.

@@ -49,43 +49,27 @@ MachineSetup full_queue_setup(const std::string& overflow) {
 
 }  // namespace
 
-TEST_CASE("two machines: one timed with 5 ns, one functional") {
-    const MachineSetup timed_setup = setup_of(timed_job());
-    const MachineSetup functional_setup =
-        setup_of(with_settings({}, "mode=functional hardware.tests_units=3 timing.clock_period=3200"));
-    const AloneResult alone = run_alone(functional_setup);
-
-    NamedMachine timed("timed", timed_setup);
-    NamedMachine functional("functional", functional_setup);
-    sc_core::sc_start();
-    expect_bare_mesh(timed);
-    expect_bare_mesh(functional);
-    CHECK(timed.cycles() == default_result.cycles);
-    CHECK(timed.monitor.mesh.triangles.size() == default_result.triangles);
-    CHECK(functional.pipeline.clock.last_cycle() == 0);
-    expect_drained_in_last_cycle(timed);
-    CHECK(functional.drained.back().value() == alone.drained);
-    CHECK(functional.drained.back() != timed.drained.back());
-}
-
-TEST_CASE("two machines: one with 5 ns and one with 3.2 ns and three Tessellation Tests units") {
+TEST_CASE("three machines: one with 5 ns, one with 3.2 ns and three Tessellation Tests units, one functional") {
     const MachineSetup slow_setup = setup_of(timed_job());
     const MachineSetup fast_setup = setup_of(three_tests_units_job());
-    const AloneResult alone = run_alone(fast_setup);
+    const MachineSetup functional_setup = setup_of(with_settings(three_tests_units_job(), "mode=functional"));
+    const AloneResult fast_alone = run_alone(fast_setup), functional_alone = run_alone(functional_setup);
 
-    NamedMachine slow("slow", slow_setup);
-    NamedMachine fast("fast", fast_setup);
+    NamedMachine slow("slow", slow_setup), fast("fast", fast_setup), functional("functional", functional_setup);
     sc_core::sc_start();
-    expect_bare_mesh(slow);
-    expect_bare_mesh(fast);
+    for (const NamedMachine* machine : {&slow, &fast, &functional})
+        expect_bare_mesh(*machine);
     CHECK(slow.cycles() == default_result.cycles);
-    CHECK(fast.cycles() == alone.cycles);
+    CHECK(fast.cycles() == fast_alone.cycles);
+    CHECK(functional.pipeline.clock.last_cycle() == 0);
     CHECK(slow.pipeline.clock.period() == sc_core::sc_time(5000, sc_core::SC_PS));
     CHECK(fast.pipeline.clock.period() == sc_core::sc_time(3200, sc_core::SC_PS));
     expect_drained_in_last_cycle(slow);
     expect_drained_in_last_cycle(fast);
-    CHECK(fast.drained[0].value() == alone.drained);
+    CHECK(fast.drained[0].value() == fast_alone.drained);
     CHECK(fast.drained[0] < slow.drained[0]);
+    CHECK(functional.drained.back().value() == functional_alone.drained);
+    CHECK(functional.drained.back() != fast.drained[0]);
 }
 
 TEST_CASE("two machines: a queue that overflows, or stalls, stops only its own machine") {

@@ -8,7 +8,7 @@
 #include "testbench/tests/modules/memories/memory_reader.h"
 #include "testbench/tests/support/case_table.h"
 
-// A table's memory, cycle by cycle: ports, banks, latency, width, gathers, arbitration, back-pressure.
+// A table's memory, cycle by cycle: requests at its ports and banks, latency, arbitration, back-pressure.
 
 using namespace tessera;
 using namespace tessera::testing;
@@ -96,34 +96,24 @@ struct Row {
     Cycles answers;
 };
 
-// Request k of one entry takes the port in cycle 10 + k; its data arrive `latency` cycles later.
+// Request k of one entry takes the port in cycle 10 + k; its data arrive `latency` cycles later. What the ports alone
+// decide is in test_arbiters.cpp.
 const CaseTable answers(
     "memory: ",
     {
         Row{"one port takes an address a cycle, data arrive a latency later", timing(1, 1, 1), single_reads(20),
             every(11, 1, 20)},
         {"latency 0 answers in the cycle of the address", timing(1, 1, 0), single_reads(20), every(10, 1, 20)},
-        {"latency 100 does not lower the throughput", timing(1, 1, 100), single_reads(60), every(110, 1, 60)},
         {"latency 2000 is beyond the clock's table", timing(1, 1, 2000), single_reads(3), every(2010, 1, 3)},
         // addresses in cycles 10 to 13, 14 to 17 ...; the last address's data complete the response
         {"a gather of four keeps one port for four cycles", timing(1, 1, 1), gathers(10, 4), every(14, 4, 10)},
-        {"a gather of nine keeps one port for nine cycles", timing(1, 1, 3), gathers(5, 9), every(21, 9, 5)},
-        {"two ports halve a gather of four", timing(2, 1, 1), gathers(10, 4), every(12, 2, 10)},
-        {"four ports take a gather of four a cycle", timing(4, 1, 1), gathers(10, 4), every(11, 1, 10)},
         // nine slots, four per cycle: gather k ends in slot 9 k + 8, in cycle 10 + floor((9 k + 8) / 4)
         {"four ports and gathers of nine share cycles", timing(4, 1, 1), gathers(6, 9), {13, 15, 17, 19, 22, 24}},
-        // 4 bytes at 2 per cycle
-        {"a port narrower than an entry reads it in parts", timing(1, 1, 1, 2), single_reads(10), every(12, 2, 10)},
-        // 2 cycles per entry, 8 per gather
-        {"a width that does not divide the entry rounds up", timing(1, 1, 1, 3), gathers(4, 4), every(18, 8, 4)},
         // 4 bytes at 2 per cycle: entries 0 and 1 in cycles 10 and 11, one on each port
         {"two narrow ports read two entries in parts, and no entry in one cycle",
          timing(2, 1, 1, 2),
          single_reads(6),
          {12, 12, 14, 14, 16, 16}},
-        {"a gather of four through two narrow ports", timing(2, 1, 1, 2), gathers(3, 4), every(14, 4, 3)},
-        {"a port wider than an entry still takes one per cycle", timing(1, 1, 1, 64), single_reads(10),
-         every(11, 1, 10)},
         // Entries 0, 1, 2, 3 lie in banks 0, 1, 2, 3: one cycle; 0, 4, 8, 12 all in bank 0: four. Gather 2 occupies
         // bank 0 in cycles 12 to 15. Requests are served in order, as soon as any bank is free: gather 3 from cycle 13
         // to 14, in banks 1 (twice), 2, 3. Responses stay in order: gather 2's is in 16, gather 3's follows.
@@ -138,8 +128,6 @@ const CaseTable answers(
          windowed(4, 2),
          {{0, 4, 8}, {0, 1}, {1, 2}},
          {13, 14, 14}},
-        // two in each bank, cycles 10 and 11; {0, 2} bank 0 in 12, 13; {1, 3} as bank 1 is free in 12: 12, 13
-        {"requests wait while every bank is taken", timing(1, 2, 1), {{0, 1, 2, 3}, {0, 2}, {1, 3}}, {12, 14, 14}},
     },
     [](const Row& row) {
         Bench bench(row.timing);
