@@ -19,10 +19,12 @@ namespace tessera {
 /// unchanged, if no texel has a height.
 std::optional<std::array<float, 2>> replace_missing(HeightMap& map, const std::vector<double>& no_data);
 
-/// Sets `no_data_hint` if the values look as if one of them marks missing data: the lowest or highest value is held by
-/// several texels and farther from the next value than all others from each other, or by one, a thousand times as far.
-/// Not if fewer than 8 other values occur (masks, steps), nor for the ends of the ranges 0..1 and 8 bits, where floors
-/// and ceilings of ordinary maps lie. given: map.no_data.
+/// Sets `no_data_hint` if the values look as if some of them mark missing data: the lowest or highest value, or up to
+/// four nearly equal ones, is held by several texels and farther from the next value than all others from each other, or
+/// by one, a thousand times as far; a narrower gap is enough beside many values or densely lying ones. Beside fewer than 8
+/// others (masks, steps) the gap must be wide, and the value neither 0 nor an end of the ranges 0..1 and 8 bits.
+/// Also if near several texels of the lowest or highest value, and nowhere else, lie values between it and the heights:
+/// a border that resampling has blurred. given: map.no_data.
 void suspect_no_data(HeightMap& map, const std::vector<double>& given);
 
 }  // namespace tessera

@@ -85,6 +85,16 @@ unwrapped() {
 bake() { tessera bake a.toml --output b.exr "$@"; }
 # pgm WIDTH HEIGHT [MAXVAL]: an ASCII map, a slope
 pgm() { awk -v W=$1 -v H=$2 -v M=${3:-255} 'BEGIN { print "P2", W, H, M; for (k = 0; k < W * H; ++k) print k % (M + 1) }'; }
+# hole BLURRED: an ASCII map of heights with missing data, 65535, and beside them texels half way to it if BLURRED is 1
+hole() {
+    awk -v B=$1 'BEGIN {
+        print "P2 48 48 65535"
+        for (k = 0; k < 2304; ++k) {
+            x = k % 48; y = int(k / 48); h = 1000 + k % 500
+            print x < 20 && y < 20 ? 65535 : x < 21 && y < 21 && B ? int((65535 + h) / 2) : h
+        }
+    }'
+}
 )";
 
 ProgramEnd shell(const std::string& script, const fs::path& folder, const std::vector<std::string>& arguments = {}) {

@@ -183,9 +183,6 @@ TEST_CASE("a map that seems to have missing data says which value, how many texe
     HeightMap two = hill(0, 0, -3.4e38, 30);
     two.values.back() = 0.25F;
     CHECK(advised(hint(two)) == "-3.4e+38");
-    for (float& value : two.values)
-        value = value < -1 ? -9999 : value;
-    CHECK(hint(two) == "");
 }
 
 TEST_CASE("beside many values, which lie close together, a narrower gap is enough") {
@@ -207,6 +204,137 @@ TEST_CASE("beside many values, which lie close together, a narrower gap is enoug
     CHECK(slope(35, 1236, -4000, 1, 1) == "");  // a shaft
 }
 
+TEST_CASE("0 and full scale of 8 bits and of 0..1 may mark missing data, too") {
+    struct Row {
+        double low, high, hole, units;
+        const char* value;
+    };
+    for (const Row& row : {Row{0.6, 0.9, 0, 1, "0"}, Row{0.1, 0.3, 1, 1, "1"}, Row{150, 255, 0, 255, "0"},
+                           Row{10, 90, 255, 255, "255"}, Row{60, 200, 0, 255, "0"}, Row{100, 200, 255, 255, "255"}}) {
+        INFO(row.hole << " in " << row.low << " to " << row.high);
+        HeightMap map;
+        map.width = map.height = 32;
+        map.source_units = row.units;
+        for (int k = 0; k < 1024; ++k) {
+            const double height = row.low + (row.high - row.low) * k / 1023;
+            map.values.push_back(static_cast<float>((k < 40          ? row.hole
+                                                     : row.units > 1 ? std::round(height)
+                                                                     : height) /
+                                                    row.units));
+        }
+        CHECK(advised(hint(map)) == row.value);
+        REQUIRE(replace_missing(map, {std::stod(row.value)}));
+        CHECK(map.replaced.size() == 40);
+        CHECK(hint(map) == "");
+    }
+}
+
+TEST_CASE("several nearly equal values that mark missing data are advised together") {
+    struct Row {
+        double first, second, units;
+        const char* advice;
+    };
+    for (const Row& row : {Row{-32767, -32768, 1, "[-32768, -32767]"}, Row{-9999, -9998.99, 1, "[-9999, -9998.99]"},
+                           Row{65534, 65535, 65535, "[65535, 65534]"}}) {
+        INFO(row.advice);
+        HeightMap map = hill(35, 1235, row.first, 9, row.units);
+        for (std::size_t k = 0; k < 4; ++k)
+            map.values[k] = static_cast<float>(row.second / row.units);
+        const std::string text = hint(map);
+        CHECK_THAT(text, StartsWith("9 texels hold one of the ") && Contains(" values, ") && Contains(", which are "));
+        CHECK(advised(text) == row.advice);
+        REQUIRE(replace_missing(map, {row.first, row.second}));
+        CHECK(map.replaced.size() == 9);
+        CHECK(hint(map) == "");
+    }
+    INFO("a spire of two texels");
+    HeightMap spire = hill(0, 100, 0, 0);
+    spire.values[0] = 400;
+    spire.values[1] = 401;
+    CHECK(hint(spire) == "");
+}
+
+TEST_CASE("beside few levels a value that marks missing data is far from all") {
+    const auto steps = [](float hole, std::vector<float> levels, double units = 1) {
+        HeightMap map = hill(0, 0, 0, 0, units);
+        for (std::size_t k = 0; k < map.values.size(); ++k)
+            map.values[k] = static_cast<float>(static_cast<double>(k < 20 ? hole : levels[k % levels.size()]) / units);
+        return advised(hint(map));
+    };
+    CHECK(steps(-9999, {100, 110, 120}) == "-9999");
+    CHECK(steps(-9999, {0, 0.25F}) == "-9999");
+    CHECK(steps(-32768, {500}) == "-32768");
+    CHECK(steps(65535, {100, 101, 105}, 65535) == "65535");
+    CHECK(steps(-1, {0, 1}) == "");
+    CHECK(steps(-1, {1}) == "");
+    CHECK(steps(-1000, {1000}) == "");
+    CHECK(steps(65535, {0}, 65535) == "");
+    CHECK(steps(0, {255}, 255) == "");
+    CHECK(steps(0, {200, 201, 202}, 255) == "");
+    CHECK(steps(0, {60000, 60001}, 65535) == "");
+}
+
+TEST_CASE("values between missing data and heights, beside the missing data, are noticed as a blurred border") {
+    // Heights with a square hole; each texel is the mean of those up to `reach` away.
+    const auto blurred = [](double low, double high, double hole, int reach, double units) {
+        HeightMap map = hill(low, high, 0, 0, units);
+        const auto is_hole = [](int x, int y) { return x >= 1 && x < 8 && y >= 2 && y < 9; };
+        const HeightMap sharp = map;
+        for (int y = 0; y < side; ++y)
+            for (int x = 0; x < side; ++x) {
+                double sum = 0;
+                int count = 0;
+                for (int row = std::max(y - reach, 0); row <= std::min(y + reach, side - 1); ++row)
+                    for (int column = std::max(x - reach, 0); column <= std::min(x + reach, side - 1);
+                         ++column, ++count)
+                        sum += is_hole(column, row) ? hole : static_cast<double>(sharp.at(column, row)) * units;
+                const double value = sum / count;
+                map.at(x, y) = static_cast<float>((units > 1 ? std::round(value) : value) / units);
+            }
+        return map;
+    };
+    struct Row {
+        double low, high, hole, units;
+        const char* value;
+    };
+    for (const Row& row : {Row{35, 1235, -9999, 1, "-9999"}, Row{35, 1235, -32768, 1, "-32768"},
+                           Row{1000, 2200, 65535, 65535, "65535"}, Row{-8, -7, 9999, 1, "9999"}})
+        for (const int reach : {1, 2}) {
+            INFO(row.hole << ", reach " << reach);
+            HeightMap map = blurred(row.low, row.high, row.hole, reach, row.units);
+            const std::string text = hint(map);
+            CHECK_THAT(text, Contains(" texels within 6 of those that hold " + std::string(row.value) +
+                                      " lie between that value") &&
+                                 Contains("export the map again without interpolation across them"));
+            CHECK(advised(text) == row.value);
+            REQUIRE(replace_missing(map, {row.hole}));
+            CHECK_THAT(hint(map, {row.hole}), Contains("of those that held " + std::string(row.value)) &&
+                                                  Contains("export the map again") && !Contains("set map.no_data"));
+            map = blurred(row.low, row.high, row.hole, 0, row.units);
+            REQUIRE(replace_missing(map, {row.hole}));
+            CHECK(hint(map) == "");
+        }
+    INFO("a hill and a basin on a plain, with level ground");
+    for (const double sign : {1, -1}) {
+        HeightMap level = hill(0, sign * 900, 0, 0);
+        for (float& value : level.values)
+            value = static_cast<float>(std::clamp(static_cast<double>(value), -500.0, 500.0));
+        CHECK(hint(level) == "");
+    }
+    INFO("smoothed letters on a floor");
+    CHECK(hint(blurred(0, 0, 65535, 1, 65535)) == "");
+    CHECK(hint(blurred(65535, 65535, 0, 2, 65535)) == "");
+    INFO("a lake with gentle shores");
+    CHECK(hint(blurred(1000, 1900, 500, 2, 1)) == "");
+}
+
+TEST_CASE("a sample of 16 bits is named as the file has it") {
+    for (const int hole : {55537, 40001, 65534, 33333})
+        CHECK_THAT(hint(hill(35, 1235, hole, 6, 65535)),
+                   Contains("highest value, " + std::to_string(hole) + ", which is") &&
+                       EndsWith("map.no_data = " + std::to_string(hole)));
+}
+
 TEST_CASE("ordinary maps do not seem to have missing data") {
     HeightMap sea = hill(0, 900, 0, 0);
     for (float& value : sea.values)
@@ -217,9 +345,11 @@ TEST_CASE("ordinary maps do not seem to have missing data") {
         value = value < 100 ? 0 : value;  // a cliff coast
     CHECK(hint(sea) == "");
     CHECK(hint(hill(35, 1235, -500, 20)) == "");
-    CHECK(hint(hill(0.6, 0.9, 0, 40)) == "");       // objects on a floor
-    CHECK(hint(hill(150, 255, 0, 40, 255)) == "");  // the same in 8 bits
-    CHECK(hint(hill(0.1, 0.3, 1, 40)) == "");       // clipped towers
+    sea = hill(0, 200, 0, 0, 255);
+    for (float& value : sea.values)
+        value = std::max(value - 40 / 255.F, 0.F);
+    CHECK(hint(sea) == "");
+    CHECK(hint(hill(60, 255, 0, 1, 255)) == "");
     HeightMap mask = hill(0, 0, 1, 100, 65535);
     CHECK(hint(mask) == "");
     for (const int levels : {1, 2, 3, 7}) {
