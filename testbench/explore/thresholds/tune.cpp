@@ -64,16 +64,31 @@ class SharedProgress {
     const std::function<void(const std::string&, double)>& show_;
 };
 
+/// What makes the base mesh coarser, in parentheses.
+const char* density_of(const TuneRequest& request) {
+    if (request.bases.front().kind != BaseChoice::Kind::job)
+        return " (--grid)";
+    switch (request.job.mesh.source) {
+        case MeshSource::plane:
+        case MeshSource::cylinder:
+        case MeshSource::sphere:
+        case MeshSource::patches: return " (mesh.columns, mesh.rows)";
+        case MeshSource::lattice: return " (mesh.spacing)";
+        case MeshSource::file:
+        case MeshSource::run: break;
+    }
+    return "";
+}
+
 [[noreturn]] void refuse_budget(const TuneRequest& request, const std::vector<Explored>& explored) {
     std::uint64_t least = std::numeric_limits<std::uint64_t>::max();
     for (const Explored& e : explored)
         least = std::min<std::uint64_t>(least, e.base_triangles);
     if (least > request.goal.triangles)
-        throw InputError(
-            fmt::format("--triangles {}: the base mesh has {} triangles before any is split: use at "
-                        "least that many, or "
-                        "a coarser base mesh (mesh.columns, mesh.rows, or --grid auto)",
-                        request.goal.triangles, least));
+        throw InputError(fmt::format(
+            "--triangles {}: the base mesh has {} triangles before any is split: use at least that many, or a "
+            "coarser base mesh{}",
+            request.goal.triangles, least, density_of(request)));
     throw InputError(
         fmt::format("--triangles {}: with the job's other tests the mesh has more at any of the "
                     "thresholds searched: search more of them (--tests), or change the others under [tests]",
@@ -115,8 +130,7 @@ double rounded_up(double value) {
                         request.goal.error / unit, request.goal.most_triangles));
     throw InputError(
         fmt::format("--error {:.6g}: the least {} error found is {:.6g} {}, with {} triangles: allow "
-                    "at least that, "
-                    "or try other base meshes (--grid auto)",
+                    "at least that",
                     request.goal.error / unit, request.goal.largest ? "largest" : "RMS",
                     rounded_up(request.goal.error_of(*least) / unit), unit_name, least->triangles));
 }

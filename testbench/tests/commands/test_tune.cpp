@@ -170,7 +170,12 @@ TEST_CASE("tune refuses wrong usage and unreachable goals, and writes nothing") 
     CHECK_THAT(tune({"--triangles", "900", "--set", "map.heights=fitted"}), Contains("map.heights=given"));
     CHECK_THAT(tune({"--triangles", "0"}), Contains("--triangles 0"));
     CHECK_THAT(tune({"--triangles", "-4"}), Contains("--triangles") && Contains("-4"));
-    CHECK_THAT(tune({"--triangles", "17"}), Contains("18 triangles"));
+    CHECK_THAT(tune({"--triangles", "17"}),
+               Contains("18 triangles") && Contains("(mesh.columns, mesh.rows)") && !Contains("--grid"));
+    CHECK_THAT(tune({"--triangles", "17", "--grid", "4x4"}), Contains("32 triangles") && Contains("(--grid)"));
+    CHECK_THAT(tune({"--triangles", "3", "--set", "mesh.source=lattice", "--set", "mesh.spacing=16"}),
+               Contains("(mesh.spacing)"));
+    CHECK_THAT(tune({"--error", "1e-9"}), Contains("allow at least that") && !Contains("--grid"));
     CHECK_THAT(tune({"--triangles", "3000000"}), Contains("at most"));
     CHECK_THAT(tune({"--triangles", "300000000"}), Contains("limits.triangles"));
     for (const char* number : {"18446744073709551615", "18446744073709551616", "99999999999999999999999"})
