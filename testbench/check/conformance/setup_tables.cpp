@@ -64,6 +64,8 @@ class MapCheck {
         Judge judge(result_, "displacement map", "every code, to nearest or as fitted by the host");
         const golden::Map& map = golden_.map();
         const bool fitted = golden_.job().map.heights == MapHeights::fitted;
+        if (fitted)
+            check_fitted_heights();
         each_entry(judge, host_.displacement_map, registers_.displacement_map, map.width(), map.height(),
                    [&](std::uint32_t x, std::uint32_t y, std::uint64_t code) {
                        const std::size_t texel = texel_of(x, y);
@@ -71,6 +73,31 @@ class MapCheck {
                        judge.judge([&] { return fmt::format("({}, {})", x, y); }, number(code), golden, to_nearest,
                                    double_rounding * golden);
                    });
+    }
+
+    /// A fitted height is none that does not occur around its texel.
+    void check_fitted_heights() {
+        constexpr int reach = 2;  // texels
+        Judge judge(result_, "fitted heights", "every code, within those of the texels up to two away");
+        const golden::Map& map = golden_.map();
+        const auto addressed = [](int index, int size, golden::AddressMode mode) {
+            return mode == golden::AddressMode::repeat ? (index + reach * size) % size : std::clamp(index, 0, size - 1);
+        };
+        for (int y = 0; y < map.height(); ++y)
+            for (int x = 0; x < map.width(); ++x) {
+                double low = golden_.scene().highest_code, high = 0;
+                for (int row = y - reach; row <= y + reach; ++row)
+                    for (int column = x - reach; column <= x + reach; ++column) {
+                        const double code = golden_.unrounded_code(
+                            texel_of(static_cast<std::uint32_t>(addressed(column, map.width(), map.address_u())),
+                                     static_cast<std::uint32_t>(addressed(row, map.height(), map.address_v()))));
+                        low = std::min(low, code);
+                        high = std::max(high, code);
+                    }
+                const std::size_t texel = texel_of(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y));
+                judge.judge([&] { return fmt::format("({}, {})", x, y); }, map.code(texel), low,
+                            {to_nearest.low, high - low + to_nearest.high}, double_rounding * high);
+            }
     }
 
     void check_normal_map() {

@@ -137,6 +137,11 @@ TEST_CASE("fitted heights raise neither the root mean square nor the largest dis
         INFO(figure);
         CHECK(value(fitted, "interpolated", figure) <= value(given, "interpolated", figure));
     }
+    // The largest of the reference with steps depends on which of its points are samples.
+    for (const char* const figure : {"reference_to_mesh_rms", "mesh_to_reference_rms"}) {
+        INFO(figure);
+        CHECK(value(fitted, "nearest_texel", figure) <= value(given, "nearest_texel", figure));
+    }
 }
 
 TEST_CASE("compare refuses a folder that is not a run, and writes nothing") {

@@ -350,6 +350,27 @@ TEST_CASE("one wrong fitted height fails its job") {
     CHECK_THAT(run.check().first_wrong, Contains("displacement map: (30, 30)"));
 }
 
+TEST_CASE("a fitted height that does not occur around its texel fails its job, although it is copied correctly") {
+    Job job;
+    job.map.heights = MapHeights::fitted;
+    job.map.width = job.map.height = 60;
+    SetupRun run{job};
+    const auto set_to_own = [&](int more) {
+        const std::size_t texel = 2 * 60 + 2;  // level ground
+        MachineSetup other = run.setup;
+        const int before = other.fitted_heights[texel];
+        other.fitted_heights[texel] = static_cast<std::uint16_t>(other.map.codes[texel] + more);
+        REQUIRE(before == other.map.codes[texel]);
+        add_to_entry(run.simulation.host.displacement_map, run.setup.registers.displacement_map, 2, 2, 0, more);
+        const GoldenJob golden(run.resolved, run.mesh, run.map, run.setup.model_scale, other);
+        const SetupResult result = check_setup(run.setup, golden, run.simulation);
+        add_to_entry(run.simulation.host.displacement_map, run.setup.registers.displacement_map, 2, 2, 0, -more);
+        return result;
+    };
+    CHECK(set_to_own(0).passed());
+    CHECK_THAT(set_to_own(1).first_wrong, Contains("fitted heights: (2, 2)"));
+}
+
 TEST_CASE("a wrong value is tried for every register of the default design") {
     std::set<std::string> tried;
     for (const Mistake& mistake : register_mistakes())
