@@ -201,8 +201,8 @@ bool Pipeline::holds_table(const TableMemory& table, std::uint64_t address, cons
 
 void Pipeline::begin_frame() {
     ++frames_begun_;
-    has_frames_ = true;
     frame_drained_ = false;
+    get_triangle.begin_frame();
 }
 
 void Pipeline::end_frame() {
@@ -216,7 +216,7 @@ void Pipeline::see_whether_drained() {
         return;
     for (const auto& watch : watches_)
         watch->rest();
-    if (frames_begun_ > 0 || (has_frames_ && std::exchange(frame_drained_, true)))
+    if (frames_begun_ > 0 || std::exchange(frame_drained_, true))
         return;
     drained_.notify();
 }

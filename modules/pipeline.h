@@ -94,12 +94,11 @@ class Pipeline : public sc_core::sc_module {
     /// Call while idle when a table's content or columns have changed.
     void tables_changed();
 
-    /// A source of triangles calls these before the first and after the last of a frame. Several may, also at the same
-    /// time.
+    /// A source of triangles calls these before the first and after the last of a frame: a triangle before any frame is an
+    /// SC_ERROR. Several may, also at the same time.
     void begin_frame();
     void end_frame();
-    /// Notified once a frame: no source has triangles left, and nothing is in flight. If no source calls begin_frame():
-    /// whenever nothing is left to do and nothing is in flight, in functional mode after each base triangle.
+    /// Notified once a frame, in both modes: no source has triangles left, and nothing is in flight.
     const sc_core::sc_event& drained() const { return drained_; }
 
     /// Every unit and memory, units in the order of all_units.h.
@@ -165,8 +164,7 @@ class Pipeline : public sc_core::sc_module {
     sc_core::sc_event drained_{"drained"};
     sc_core::sc_event frame_ended_{"frame_ended"};
     unsigned frames_begun_ = 0;  // and not ended, by the sources
-    bool has_frames_ = false;
-    bool frame_drained_ = false;
+    bool frame_drained_ = true;  // before the first, too
     std::vector<Unit*> units_;
     std::vector<TableReader> readers_;
     bool tables_elsewhere_ = false;

@@ -110,12 +110,23 @@ void GetTriangle::send_whole(const datapath::Triangle& triangle, sc_core::sc_tim
         send_whole(tests_[k], whole, parts_to_test(triangle), start, delay);
 }
 
+void GetTriangle::take_from_host() {
+    if (!frame_begun_)
+        SC_REPORT_ERROR(
+            "tessera/get_triangle",
+            (std::string(name()) +
+             ": a triangle outside a frame: call Pipeline::begin_frame() before the first triangle of a "
+             "frame and end_frame() after its last, so that drained() can tell when all have left the machine")
+                .c_str());
+    ++host_triangles_;
+}
+
 void GetTriangle::b_transport_from_host(datapath::Triangle& triangle, sc_core::sc_time& delay) {
     while (!below_watermark_) {
         host_waits_ = true;
         wait(host_may_send_);
     }
-    ++host_triangles_;
+    take_from_host();
     send_whole(triangle, delay);
 }
 
@@ -149,7 +160,7 @@ bool GetTriangle::begin(std::uint64_t cycle) {
         ++queue_triangles_;
     } else if (!from_host.empty() && below_watermark_) {
         source = &from_host;
-        ++host_triangles_;
+        take_from_host();
     } else {
         return false;
     }

@@ -42,6 +42,9 @@ class GetTriangle : public Unit {
 
     GetTriangle(const sc_core::sc_module_name& name, const UnitContext& context);
 
+    /// A source has begun a frame (Pipeline::begin_frame). A triangle before is an SC_ERROR.
+    void begin_frame() { frame_begun_ = true; }
+
     std::uint64_t host_triangles() const { return host_triangles_; }
     std::uint64_t queue_triangles() const { return queue_triangles_; }
     /// Timed mode: vertices, normals and edges sent to Calculate New P.
@@ -67,6 +70,7 @@ class GetTriangle : public Unit {
     void b_transport_from_host(datapath::Triangle& triangle, sc_core::sc_time& delay);
     void b_transport_from_triangle_queue(datapath::Triangle& triangle, sc_core::sc_time& delay);
     void b_transport_level(QueueLevel& level, sc_core::sc_time& delay);
+    void take_from_host();
     void send_whole(const datapath::Triangle& triangle, sc_core::sc_time& delay);
     template <class Item>
     void send_whole(Branch<Item>& branch, const TakenTriangle& taken, Parts parts, const sc_core::sc_time& start,
@@ -91,6 +95,7 @@ class GetTriangle : public Unit {
     std::array<Branch<TestOperands>, most_tests_units> tests_;
     std::size_t tests_units_;
     bool below_watermark_ = true;  // the Triangle Queue
+    bool frame_begun_ = false;
     std::uint64_t host_triangles_ = 0;
     std::uint64_t queue_triangles_ = 0;
 

@@ -116,6 +116,59 @@ const CaseTable<Drained> drained(
         }
     });
 
+/// Sends one triangle, and begins no frame.
+struct FramelessSource : sc_core::sc_module, CycleProcess {
+    StreamOutput<datapath::Triangle> out{"out"};
+
+    FramelessSource(const sc_core::sc_module_name& name, Pipeline& machine, const datapath::Triangle& triangle)
+        : sc_module(name), machine_(machine), triangle_(triangle) {
+        machine.clock.attach(*this);
+        out.clocked_by(machine.clock, *this);
+        out.bind(machine.get_triangle.from_host);
+        SC_HAS_PROCESS(FramelessSource);
+        if (machine.transport() == Transport::blocking)
+            SC_THREAD(send);
+    }
+
+  private:
+    void start_of_simulation() override {
+        if (machine_.transport() == Transport::non_blocking)
+            machine_.clock.wake(*this);
+    }
+    void step() override {
+        if (!std::exchange(sent_, true))
+            out.send(triangle_);
+    }
+    void send() {
+        sc_core::sc_time delay = sc_core::SC_ZERO_TIME;
+        out->b_transport(triangle_, delay);
+    }
+    Pipeline& machine_;
+    datapath::Triangle triangle_;
+    bool sent_ = false;
+};
+
+struct Frameless {
+    std::string name;
+    Mode mode;
+};
+
+const CaseTable<Frameless> frameless("a triangle before any frame is an error that says how to begin one: ",
+                                     {{"timed", Mode::timed}, {"functional", Mode::functional}},
+                                     [](const Frameless& row) {
+                                         Job job = one_quad_job();
+                                         job.mode = row.mode;
+                                         const MachineSetup setup = setup_of(job);
+                                         Pipeline pipeline("pipeline", setup.registers, setup.design);
+                                         Rasteriser rasteriser("rasteriser", pipeline.clock, {});
+                                         pipeline.lighting.to_rasteriser.bind(rasteriser.from_lighting);
+                                         const FramelessSource source("source", pipeline, setup.base_triangles.front());
+                                         CHECK_THAT(error_of([] { sc_core::sc_start(); }),
+                                                    Contains("pipeline.get_triangle: a triangle outside a frame: "
+                                                             "call Pipeline::begin_frame()"));
+                                         CHECK(pipeline.get_triangle.host_triangles() == 0);
+                                     });
+
 struct Row {
     std::string name;
     std::string settings;
