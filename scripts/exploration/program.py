@@ -154,10 +154,11 @@ def run(task, folder, longest):
     place = Path(folder, "run")
     figures = {**figures_of(place / "statistics.json"), **figures_of(place / "conformance.json"),
                **figures_of(place / "error.json", "error.")}
-    mesh, timing = place / "mesh.ply", place / "timing.txt"
+    mesh, report = place / "mesh.ply", place / "report.txt"
+    timing = re.search(r"^timing\n.*?(?=\n\n|\Z)", report.read_text(), re.M | re.S) if report.is_file() else None
     if mesh.is_file():
         figures["mesh.sha256"] = [file_hash(mesh), ""]
     reason = "" if done.returncode == 0 else done.stderr.replace(str(place), "RUN").strip()
     return {"exit_code": done.returncode, "reason": reason.removeprefix("tessera: "), "figures": figures,
-            "timing": timing.read_text() if timing.is_file() else "", "output": "" if figures else done.stdout,
+            "timing": timing.group() if timing else "", "output": "" if figures else done.stdout,
             "seconds": round(end.ru_utime + end.ru_stime - begin.ru_utime - begin.ru_stime, 3)}

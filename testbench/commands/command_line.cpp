@@ -98,7 +98,7 @@ std::function<ExitCode()> read_command_line(int argc, const char* const* argv) {
 
     CLI::App* const compare = app.add_subcommand("compare",
                                                  "measure a run's mesh against the displaced surface; writes "
-                                                 "error.json and error.txt into its folder");
+                                                 "error.json into its folder");
     compare->add_option("RUN", run_folder, "run folder, written by `tessera run`")->required();
     compare->add_option("--data", data, "folder of `data:` paths in its job; default: $TESSERA_DATA");
 

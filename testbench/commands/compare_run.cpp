@@ -8,6 +8,7 @@
 #include "testbench/common/atomic_set.h"
 #include "testbench/machine/inputs.h"
 #include "testbench/output/report/error_report.h"
+#include "testbench/output/report/figures_text.h"
 #include "testbench/run_folder/read_run.h"
 
 namespace tessera {
@@ -25,12 +26,11 @@ ExitCode compare_run(const std::filesystem::path& run_folder, const std::filesys
     const MeshError error = measure_error(base, map, DisplacementOf::from(run.job, map), run.mesh, limits);
     progress.clear();
 
-    const std::string text = error_text(run.job, run.mesh, error);
+    const std::vector<Figure> figures = error_figures(run.job, run.mesh, error);
     AtomicSet files;
-    write_file(run.folder / "error.json", statistics_json(error_figures(run.job, run.mesh, error)));
-    write_file(run.folder / "error.txt", text);
+    write_file(run.folder / "error.json", statistics_json(figures));
     files.commit();
-    fmt::print("{}\n  error.json and error.txt in {}\n", text,
+    fmt::print("{}\n  error.json in {}\n", figures_text(figures),
                std::filesystem::absolute(run.folder).lexically_normal().string());
     return ExitCode::fine;
 }

@@ -22,10 +22,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* run_file_names[] = {"job.toml",         "mesh.ply",        "mesh.obj",         "statistics.json",
-                                          "statistics.csv",   "conformance.txt", "conformance.json", "timing.txt",
-                                          "queue_levels.csv", "picture.png",     "error.json",       "error.txt",
-                                          "trace.vcd",        "trace.fst",       "frames.csv",       "frames.txt"};
+constexpr const char* run_file_names[] = {"job.toml",       "mesh.ply",         "mesh.obj",   "statistics.json",
+                                          "statistics.csv", "conformance.json", "report.txt", "queue_levels.csv",
+                                          "picture.png",    "error.json",       "trace.vcd",  "trace.fst",
+                                          "frames.csv",     "frames.txt"};
 
 /// Whether a run, or a command on a run, writes or removes a file of this name.
 bool is_run_file(const std::string& name) {

@@ -179,7 +179,7 @@ ExitCode run_frames(const Job& asked, const RunFrame& run) {
         const int code = wait_for(child.process, frame);
         if (code == static_cast<int>(ExitCode::check_failed) &&
             fs::exists(fs::path(frame.job.output.folder) / "statistics.json")) {
-            print_failure(frame, fmt::format("checks failed, see {}/conformance.txt", frame.job.output.folder));
+            print_failure(frame, fmt::format("checks failed, see {}/report.txt", frame.job.output.folder));
             worst = ExitCode::check_failed;
         } else if (code != static_cast<int>(ExitCode::fine)) {
             print_failure(frame, fmt::format("ended with exit code {}{}; {} of {} frames are complete, in {}", code,

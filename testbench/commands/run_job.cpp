@@ -112,13 +112,11 @@ void write_reports(const std::filesystem::path& folder, const Job& job, const Ma
     const std::vector<Figure> figures = collect_statistics(setup, simulation, counts);
     write_file(folder / "statistics.json", statistics_json(figures));
     write_file(folder / "statistics.csv", statistics_csv(figures));
-    write_file(folder / "conformance.txt", conformance_text(checks));
     write_file(folder / "conformance.json", conformance_json(checks));
-    if (job.mode == Mode::timed) {
-        write_file(folder / "timing.txt", timing_text(simulation));
+    write_file(folder / "report.txt", report_text(checks, figures));
+    if (job.mode == Mode::timed)
         write_file(folder / "queue_levels.csv",
                    queue_levels_csv(simulation.last_machine().pipeline.triangle_queue.history()));
-    }
 }
 
 /// Name and window of the waveforms; writes trace.fst if requested.
@@ -135,7 +133,7 @@ std::string finish_traces(Traces& traces, const Command& command, const std::fil
 
 const char* verdict(const Checks& checks) {
     if (!checks.passed())
-        return "CHECKS FAILED, see conformance.txt";
+        return "CHECKS FAILED, see report.txt";
     return checks.any() ? "all checks passed" : "nothing was checked";
 }
 

@@ -1,10 +1,11 @@
 #include "testbench/output/report/conformance_report.h"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
-#include <array>
 #include <nlohmann/json.hpp>
 #include <utility>
+
+#include "testbench/output/report/figures_text.h"
 
 namespace tessera {
 
@@ -12,17 +13,99 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-const char* verdict(bool passed) {
-    return passed ? "passed" : "FAILED";
+/// A check's group, with its verdict. meaning: of `passed`.
+template <class Result>
+FigureGroup check_group(std::vector<Figure>& all, const char* group, const Result& result, bool passed,
+                        std::string meaning) {
+    FigureGroup figures(all, group);
+    figures.add("passed", passed, "", result.empty() ? "nothing was compared" : std::move(meaning));
+    return figures;
+}
+template <class Result>
+FigureGroup check_group(std::vector<Figure>& all, const char* group, const Result& result, std::string meaning) {
+    return check_group(all, group, result, result.passed(), std::move(meaning));
 }
 
-template <class Result>
-std::string verdict(const Result& result, bool passed) {
-    return std::string(verdict(passed)) + (result.empty() ? ", since nothing was compared" : "");
+void setup_figures(std::vector<Figure>& all, const SetupResult& result) {
+    FigureGroup c = check_group(all, "setup", result,
+                                "the host's settings are those that the golden model derives from the job, each within "
+                                "the bound of its format's rounding");
+    c.add("compared", result.compared(), "value", "");
+    c.add("wrong", result.wrong(), "value", "beyond their bound");
+    c.add("first_wrong", result.first_wrong, "", "");
+    for (const SetupResult::Part& part : result.parts) {
+        FigureGroup row(all, "setup.parts", part.name);
+        row.add("compared", part.compared, "value", "set by the host");
+        row.add("wrong", part.wrong, "value", "beyond their bound");
+        row.add("worst_ratio", part.worst_ratio, "times", "largest error over its bound; 0: all are compared exactly");
+        row.add("description", part.description, "", "");
+    }
 }
-template <class Result>
-std::string verdict(const Result& result) {
-    return verdict(result, result.passed());
+
+void decision_figures(std::vector<Figure>& all, const ConformanceResult& result, double allowed_flips) {
+    FigureGroup c = check_group(all, "conformance", result, result.passed(allowed_flips),
+                                "the golden model decided every edge again, in double precision, from the same ends");
+    c.add("passes", result.passes, "pass", "triangles that went through the tests");
+    c.add("edges", result.edges, "edge", "compared");
+    c.add("flipped_edges", result.flipped_edges, "edge",
+          "with a flip: golden's value lies within the format's error bound of its threshold");
+    c.add("flips_percent", result.flips_percent(), "percent", "of the edges");
+    c.add("allowed_flips_percent", allowed_flips, "percent", "check.allowed_flips");
+    c.add("mismatches", result.mismatches, "", "decisions and values of any kind");
+    c.add("first_mismatch", result.first_mismatch, "", "");
+    for (const ConformanceResult::Test& test : result.tests) {
+        FigureGroup row(all, "conformance.decisions", test.name);
+        row.add("compared", test.compared, "decision", "with golden's");
+        row.add("agreed", test.agreed, "decision", "equal");
+        row.add("allowed_flips", test.allowed_flips, "decision", "that differ within the error bound of the threshold");
+        row.add("mismatches", test.mismatches, "decision", "all others that differ");
+        row.add("description", test.description, "", "");
+    }
+    for (const ConformanceResult::Quantity& q : result.quantities) {
+        FigureGroup row(all, "conformance.values", q.name);
+        row.add("compared", q.count, "value", "components, hardware minus golden");
+        row.add("outside", q.outside, "value", "beyond their bound, which is derived from the formats and operands");
+        row.add("max_error", q.max_error, "", "largest error, in the unit of the row");
+        row.add("rms_error", q.rms_error, "", "root mean square of the errors, likewise");
+        row.add("largest_bound", q.max_bound, "", "of any component, likewise");
+        row.add("worst_ratio", q.worst_ratio, "times", "largest error over its own bound");
+        row.add("unit", q.unit, "", "");
+        row.add("description", q.description, "", "");
+    }
+}
+
+void distance_figures(std::vector<Figure>& all, const char* name, const EndToEndResult& result,
+                      const EndToEndResult::Distance& d) {
+    FigureGroup row(all, "end_to_end", name);
+    row.add("points", d.points, "point", "vertices and centroids of the first surface");
+    row.add("measured", d.measured, "point", "of these");
+    row.add("unseen_percent", 100 * d.unseen, "percent",
+            "of all points, at most, are farther away than the maximum, with the confidence beside it");
+    row.add("confidence_percent", 100 * EndToEndResult::confidence, "percent", "that this is so");
+    row.add("farther_percent", d.farther, "percent",
+            fmt::format("of the measured points, farther than rounding_model from the other surface; allowed: {:.3g}",
+                        result.allowed_farther()));
+    row.add("max_model", d.max_model, "model unit", "largest distance");
+    row.add("rms_model", d.rms_model, "model unit", "root mean square of the distances");
+    row.add("max_position_lsb", d.max_position_lsb, "position LSB", "largest distance");
+    row.add("rms_position_lsb", d.rms_position_lsb, "position LSB", "root mean square of the distances");
+}
+
+void end_to_end_figures(std::vector<Figure>& all, const EndToEndResult& e) {
+    FigureGroup c = check_group(all, "end_to_end", e,
+                                "the golden model's own run of the job: its own camera, heights, normal map and "
+                                "thresholds; only codes and texture coordinates are rounded, as in the hardware");
+    c.add("hardware_triangles", e.hardware_triangles, "triangle", "of the machine's mesh");
+    c.add("golden_triangles", e.golden_triangles, "triangle", "of golden's");
+    c.add("more_triangles_percent", e.more_triangles(), "percent", "of the machine's, by which golden's are more");
+    c.add("allowed_triangles_percent", e.allowed.triangles, "percent",
+          "more or fewer: check.allowed_triangles; any, if values saturated");
+    c.add("rounding_model", e.allowed.rounding, "model unit", "by which rounding moves a point, at most");
+    c.add("allowed_rms_model", e.allowed_rms_model(), "model unit",
+          "this, and the range of displacements times the root of the share of farther points");
+    c.add("golden_bound_hit", e.bound_hit, "", fmt::format("golden's run was stopped at {} triangles", e.bound));
+    distance_figures(all, "hardware_to_golden", e, e.hardware_to_golden);
+    distance_figures(all, "golden_to_hardware", e, e.golden_to_hardware);
 }
 
 const char* kind_name(InvariantFigure::Kind kind) {
@@ -35,237 +118,103 @@ const char* kind_name(InvariantFigure::Kind kind) {
     return "input";
 }
 
-std::string decisions_text(const ConformanceResult& result, double allowed_flips) {
-    std::string text = fmt::format(
-        "Decisions: {}. The golden model decided every edge again, in double precision, from the same "
-        "ends.\n"
-        "A flip is allowed where golden's value lies within the format's error bound of its threshold, on at "
-        "most {} %\n"
-        "of the edges.\n\n"
-        "  {:<16}{:>12}{:>12}{:>14}{:>12}\n",
-        verdict(result, result.passed(allowed_flips)), allowed_flips, "decision", "compared", "agreed", "allowed flips",
-        "mismatches");
-    for (const ConformanceResult::Test& test : result.tests)
-        text += fmt::format("  {:<16}{:>12}{:>12}{:>14}{:>12}\n", test.name, test.compared, test.agreed,
-                            test.allowed_flips, test.mismatches);
-    text += fmt::format("\n  edges {}, with an allowed flip {} ({:.4f} %), mismatches of any kind {}\n", result.edges,
-                        result.flipped_edges, result.flips_percent(), result.mismatches);
-    if (!result.first_mismatch.empty())
-        text += "\nFirst mismatch:\n" + result.first_mismatch + "\n";
-    return text;
+void invariant_rows(std::vector<Figure>& all, const InvariantResult& result) {
+    FigureGroup c = check_group(all, "invariants", result,
+                                "the emitted mesh equals the bare datapath's, bit for bit, and is closed by descent");
+    c.add("first_violation", result.first_violation, "", "");
+    for (const InvariantFigure& figure : invariant_figures(result)) {
+        FigureGroup row(all, "invariants", figure.name);
+        row.add("value", figure.value, "", "");
+        row.add("kind", kind_name(figure.kind), "", "violations must be 0");
+        row.add("unit", figure.unit, "", "");
+        row.add("description", figure.description, "", "");
+    }
 }
 
-std::string values_text(const ConformanceResult& result) {
-    std::string text = fmt::format(
-        "Values: hardware minus golden, in LSB of the value's format; each within a bound derived from the "
-        "formats\nand operands. `of bound`: the largest ratio of a value to its own bound.\n\n"
-        "  {:<28}{:>12}{:>10}{:>12}{:>12}{:>15}{:>10}\n",
-        "quantity", "compared", "outside", "maximum", "RMS", "largest bound", "of bound");
-    for (const ConformanceResult::Quantity& q : result.quantities)
-        text += fmt::format("  {:<28}{:>12}{:>10}{:>12.4f}{:>12.4f}{:>15.4f}{:>9.0f}%\n", q.name, q.count, q.outside,
-                            q.max_error, q.rms_error, q.max_bound, 100 * q.worst_ratio);
-    return text;
+void transport_figures(std::vector<Figure>& all, const Checks& checks) {
+    if (checks.work) {
+        FigureGroup c = check_group(all, "work", *checks.work,
+                                    "each triangle arrived where expected, once and unaltered; each unit received what "
+                                    "another sent");
+        c.add("triangles", checks.work->triangles, "triangle", "decided");
+        c.add("equations", checks.work->equations, "", "between counts of units");
+        c.add("violations", checks.work->violations, "", "");
+        c.add("first_violation", checks.work->first_violation, "", "");
+    }
+    if (checks.reads) {
+        FigureGroup c =
+            check_group(all, "reads", *checks.reads, "every table entry read was compared with the memory's contents");
+        c.add("entries", checks.reads->entries, "entry", "compared");
+        c.add("wrong", checks.reads->wrong, "entry", "");
+        c.add("missed", checks.reads->missed, "entry", "read but not compared");
+        c.add("first_wrong", checks.reads->first_wrong, "", "");
+    }
 }
 
-std::string distance_text(const char* name, const EndToEndResult::Distance& d) {
-    return fmt::format(
-               "  {:<20} {:>10} points: {:.4f} % farther than that; maximum {:.6g}, RMS {:.6g} model units "
-               "({:.2f}, {:.2f} position LSB)\n",
-               name, d.points, d.farther, d.max_model, d.rms_model, d.max_position_lsb, d.rms_position_lsb) +
-           (d.measured < d.points
-                ? fmt::format("  {:<20} {:>10} of them measured: with {} % confidence at most {:.2g} % of all are "
-                              "farther away than the maximum\n",
-                              "", d.measured, 100 * EndToEndResult::confidence, 100 * d.unseen)
-                : std::string());
+void bound_figures(std::vector<Figure>& all, const BoundResult& bound) {
+    FigureGroup c = check_group(all, "bound", bound, "the mesh keeps tests.bound_threshold");
+    const char* const unit = bound.in_picture ? "pixels" : "full scale";
+    c.add("promised", bound.promised, "", "all conditions are met");
+    c.add("threshold", bound.threshold, unit, "");
+    c.add("deviation", bound.deviation, unit, "largest found");
+    c.add("unit", unit, "", "");
+    c.add("points", bound.points, "texel", "compared");
+    c.add("text", bound.text(), "", "");
 }
 
-std::string end_to_end_text(const EndToEndResult& result) {
-    std::string text = fmt::format(
-        "End to end: {}. The golden model's own run of the job: its own camera, heights, normal map "
-        "and "
-        "thresholds.\nOnly map values (to displacement codes) and texture coordinates are rounded, as in the "
-        "hardware. Allowed: {} % more or\nfewer triangles; {} % of the points farther from the other "
-        "surface "
-        "than rounding moves them, {:.3g} model units;\nan RMS distance of {:.6g} model units: the same rounding, "
-        "and the range of displacements times the root of the\nshare of farther points that was measured.\n\n"
-        "  triangles: hardware {}, golden {}\n",
-        verdict(result), result.allowed.triangles, result.allowed_farther(), result.allowed.rounding,
-        result.allowed_rms_model(), result.hardware_triangles,
-        result.bound_hit ? fmt::format("more than {}; its run was stopped there", result.bound)
-                         : fmt::format("{} ({:+.4f} %)", result.golden_triangles, result.more_triangles()));
-    if (!result.bound_hit)
-        text += distance_text("hardware to golden", result.hardware_to_golden) +
-                distance_text("golden to hardware", result.golden_to_hardware);
-    return text;
-}
-
-std::string setup_text(const SetupResult& result) {
-    std::string text = fmt::format(
-        "Set-up: {}. The host's settings compared with those that the golden model derives from the job; each "
-        "value within\nthe bound of its format's rounding.\n\n  {:<22}{:>12}{:>10}{:>10}  {}\n",
-        verdict(result), "set by the host", "compared", "wrong", "of bound", "");
-    for (const SetupResult::Part& part : result.parts)
-        text += fmt::format("  {:<22}{:>12}{:>10}{:>9.0f}%  {}\n", part.name, part.compared, part.wrong,
-                            100 * part.worst_ratio, part.description);
-    if (!result.first_wrong.empty())
-        text += "\nFirst wrong:\n" + result.first_wrong + "\n";
-    return text;
-}
-
-std::string invariants_text(const InvariantResult& result) {
-    std::string text = fmt::format(
-        "Invariants: {}. The emitted mesh equals the bare datapath's, bit for bit, and is closed by\n"
-        "descent. Violations must be 0; the kinds `rounding` and `input` are explained below.\n\n",
-        verdict(result));
-    for (const InvariantFigure& figure : invariant_figures(result))
-        text += fmt::format("  {:<28}{:>12}  {:<10} {}\n", figure.name, figure.value, kind_name(figure.kind),
-                            figure.description);
-    if (!result.first_violation.empty())
-        text += "\nFirst violation:\n" + result.first_violation + "\n";
-    return text;
-}
-
-std::string work_text(const WorkResult& result) {
-    std::string text = fmt::format(
-        "Work conservation: {}. Each triangle arrived where expected, once and unaltered; each unit "
-        "received\nwhat another sent.\n\n  triangles decided {}, equations {}, violations {}\n",
-        verdict(result), result.triangles, result.equations, result.violations);
-    if (!result.first_violation.empty())
-        text += "\nFirst violation:\n" + result.first_violation + "\n";
-    return text;
-}
-
-std::string reads_text(const ReadResult& result) {
-    std::string text = fmt::format(
-        "Reads: {}. Every table entry read was compared with the memory's contents.\n\n"
-        "  entries {}, wrong {}, read but not compared {}\n",
-        verdict(result), result.entries, result.wrong, result.missed);
-    if (!result.first_wrong.empty())
-        text += "\nFirst wrong:\n" + result.first_wrong + "\n";
-    return text;
-}
-
-Json distance_json(const EndToEndResult::Distance& d) {
-    return {{"points", d.points},
-            {"measured", d.measured},
-            {"unseen_percent", 100 * d.unseen},
-            {"confidence_percent", 100 * EndToEndResult::confidence},
-            {"farther_percent", d.farther},
-            {"max_model", d.max_model},
-            {"rms_model", d.rms_model},
-            {"max_position_lsb", d.max_position_lsb},
-            {"rms_position_lsb", d.rms_position_lsb}};
-}
-
-Json conformance_part(const ConformanceResult& result, double allowed_flips) {
-    Json part = {{"passed", result.passed(allowed_flips)},
-                 {"passes", result.passes},
-                 {"edges", result.edges},
-                 {"flipped_edges", result.flipped_edges},
-                 {"flips_percent", result.flips_percent()},
-                 {"allowed_flips_percent", allowed_flips},
-                 {"mismatches", result.mismatches},
-                 {"first_mismatch", result.first_mismatch}};
-    for (const ConformanceResult::Test& test : result.tests)
-        part["decisions"][test.name] = {{"compared", test.compared},
-                                        {"agreed", test.agreed},
-                                        {"allowed_flips", test.allowed_flips},
-                                        {"mismatches", test.mismatches},
-                                        {"description", test.description}};
-    for (const ConformanceResult::Quantity& q : result.quantities)
-        part["values"][q.name] = {
-            {"compared", q.count},      {"outside", q.outside},         {"max_error", q.max_error},
-            {"rms_error", q.rms_error}, {"largest_bound", q.max_bound}, {"worst_ratio", q.worst_ratio},
-            {"unit", q.unit},           {"description", q.description}};
-    return part;
+std::vector<Figure> check_figures(const Checks& checks) {
+    std::vector<Figure> all;
+    if (checks.setup)
+        setup_figures(all, *checks.setup);
+    if (checks.conformance)
+        decision_figures(all, *checks.conformance, checks.allowed_flips);
+    if (checks.end_to_end)
+        end_to_end_figures(all, *checks.end_to_end);
+    if (checks.invariants)
+        invariant_rows(all, *checks.invariants);
+    transport_figures(all, checks);
+    if (checks.bound)
+        bound_figures(all, *checks.bound);
+    return all;
 }
 
 }  // namespace
 
-std::string conformance_text(const Checks& checks) {
-    std::string text = fmt::format("Conformance report: {}\n\n", verdict(checks.passed()));
-    text += checks.setup ? setup_text(*checks.setup) + "\n"
-                         : "Set-up: not checked (check.golden and check.end_to_end = false).\n\n";
-    if (checks.conformance)
-        text +=
-            decisions_text(*checks.conformance, checks.allowed_flips) + "\n" + values_text(*checks.conformance) + "\n";
-    else
-        text += "Decisions and values: not checked (check.golden = false).\n\n";
-    text += checks.end_to_end ? end_to_end_text(*checks.end_to_end) + "\n"
-                              : "End to end: not run (check.end_to_end = false).\n\n";
-    text += checks.invariants ? invariants_text(*checks.invariants)
-                              : "Invariants: not checked (check.invariants = false).\n";
-    text += "\n" + (checks.work ? work_text(*checks.work)
-                                : std::string("Work conservation: not checked (check.work = false).\n"));
-    if (checks.reads)
-        text += "\n" + reads_text(*checks.reads);
-    if (checks.bound)
-        text += fmt::format("\nBound: {}\n", checks.bound->text());
+std::string report_text(const Checks& checks, const std::vector<Figure>& statistics) {
+    std::vector<Figure> all = check_figures(checks);
+    std::string failed;
+    for (const Figure& figure : all)
+        if (figure.name == "passed" && !std::get<bool>(figure.value))
+            failed += (failed.empty() ? "" : ", ") + figure.group;
+    std::string text = failed.empty() ? "Checks: passed\n" : "Checks: FAILED: " + failed + "\n";
+    for (const auto& [made, name] :
+         {std::pair{checks.setup.has_value(), "setup (check.golden and check.end_to_end = false)"},
+          {checks.conformance.has_value(), "conformance (check.golden = false)"},
+          {checks.end_to_end.has_value(), "end_to_end (check.end_to_end = false)"},
+          {checks.invariants.has_value(), "invariants (check.invariants = false)"},
+          {checks.work.has_value(), "work (check.work = false)"}})
+        if (!made)
+            text += fmt::format("  not checked: {}\n", name);
     if (!checks.remarks.empty())
-        text += "\nRemarks on mesh and map:\n";
+        text += "Remarks on mesh and map:\n";
     for (const std::string& remark : checks.remarks)
         text += fmt::format("  {}\n", remark);
-    return text;
+    all.insert(all.end(), statistics.begin(), statistics.end());
+    return text + "\n" + figures_text(all);
 }
 
 std::string conformance_json(const Checks& checks) {
     Json json = {{"passed", checks.passed()}, {"remarks", checks.remarks}};
-    if (checks.setup) {
-        Json part = {{"passed", checks.setup->passed()},
-                     {"compared", checks.setup->compared()},
-                     {"wrong", checks.setup->wrong()},
-                     {"first_wrong", checks.setup->first_wrong}};
-        for (const SetupResult::Part& p : checks.setup->parts)
-            part["parts"][p.name] = {{"compared", p.compared},
-                                     {"wrong", p.wrong},
-                                     {"worst_ratio", p.worst_ratio},
-                                     {"description", p.description}};
-        json["setup"] = std::move(part);
+    for (const Figure& figure : check_figures(checks)) {
+        Json* place = &json;
+        for (std::size_t from = 0, dot = 0; dot != std::string::npos; from = dot + 1) {
+            dot = figure.group.find('.', from);
+            place = &(*place)[figure.group.substr(from, dot - from)];
+        }
+        if (!figure.row.empty())
+            place = &(*place)[figure.row];
+        std::visit([&](const auto& value) { (*place)[figure.name] = value; }, figure.value);
     }
-    if (checks.conformance)
-        json["conformance"] = conformance_part(*checks.conformance, checks.allowed_flips);
-    if (checks.end_to_end) {
-        const EndToEndResult& e = *checks.end_to_end;
-        json["end_to_end"] = {{"passed", e.passed()},
-                              {"hardware_triangles", e.hardware_triangles},
-                              {"golden_triangles", e.golden_triangles},
-                              {"more_triangles_percent", e.more_triangles()},
-                              {"allowed_triangles_percent", e.allowed.triangles},
-                              {"rounding_model", e.allowed.rounding},
-                              {"allowed_rms_model", e.allowed_rms_model()},
-                              {"golden_bound_hit", e.bound_hit},
-                              {"hardware_to_golden", distance_json(e.hardware_to_golden)},
-                              {"golden_to_hardware", distance_json(e.golden_to_hardware)}};
-    }
-    if (checks.invariants) {
-        Json part = {{"passed", checks.invariants->passed()}, {"first_violation", checks.invariants->first_violation}};
-        for (const InvariantFigure& figure : invariant_figures(*checks.invariants))
-            part[figure.name] = {{"value", figure.value},
-                                 {"kind", kind_name(figure.kind)},
-                                 {"unit", figure.unit},
-                                 {"description", figure.description}};
-        json["invariants"] = std::move(part);
-    }
-    if (checks.work)
-        json["work"] = {{"passed", checks.work->passed()},
-                        {"triangles", checks.work->triangles},
-                        {"equations", checks.work->equations},
-                        {"violations", checks.work->violations},
-                        {"first_violation", checks.work->first_violation}};
-    if (checks.reads)
-        json["reads"] = {{"passed", checks.reads->passed()},
-                         {"entries", checks.reads->entries},
-                         {"wrong", checks.reads->wrong},
-                         {"missed", checks.reads->missed},
-                         {"first_wrong", checks.reads->first_wrong}};
-    if (checks.bound)
-        json["bound"] = {{"passed", checks.bound->passed()},
-                         {"promised", checks.bound->promised},
-                         {"threshold", checks.bound->threshold},
-                         {"deviation", checks.bound->deviation},
-                         {"unit", checks.bound->in_picture ? "pixels" : "full scale"},
-                         {"points", checks.bound->points},
-                         {"text", checks.bound->text()}};
     return json.dump(2) + "\n";
 }
 

@@ -10,6 +10,7 @@
 #include "testbench/check/surface_error/bound_check.h"
 #include "testbench/check/transport/read_check.h"
 #include "testbench/check/transport/transport_check.h"
+#include "testbench/output/report/figure.h"
 
 namespace tessera {
 
@@ -34,10 +35,10 @@ struct Checks {
     bool any() const { return setup || conformance || end_to_end || invariants || work || reads; }
 };
 
-/// conformance.txt.
-std::string conformance_text(const Checks& checks);
+/// report.txt: the verdict, the remarks, and every figure of the checks and of `statistics` for reading.
+std::string report_text(const Checks& checks, const std::vector<Figure>& statistics);
 
-/// conformance.json.
+/// conformance.json: the checks' figures, each group in an object of its own.
 std::string conformance_json(const Checks& checks);
 
 }  // namespace tessera

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "modules/datapath/height_tests.h"
 
 namespace tessera {
@@ -47,7 +45,8 @@ std::string why_whole(const Job& job, unsigned stopped_by) {
 
 void add_direction(FigureGroup& figures, const std::string& name, const char* words, const DirectedError& error,
                    double texel) {
-    figures.add(name + "_max", error.max, "model unit", fmt::format("largest distance from {}", words));
+    figures.add(name + "_max", error.max, "model unit",
+                fmt::format("largest distance from {}; infinite without a mesh", words));
     figures.add(name + "_rms", error.rms, "model unit",
                 fmt::format("root mean square of the distance from {}, weighted by area", words));
     figures.add(name + "_max_texels", error.max / texel, "texel", "the largest, in texels");
@@ -130,113 +129,30 @@ void add_vertical(std::vector<Figure>& all, const Job& job, const RecordedMesh& 
     add_triangle(worst, job, vertical.worst_triangle, mesh.triangles[vertical.worst_triangle]);
 }
 
-std::string row(const char* name, const std::string& value) {
-    return fmt::format("  {:<34}{}\n", name, value);
-}
-
-std::string number(double value) {
-    return std::isfinite(value) ? fmt::format("{:.4g}", value) : "no mesh";
-}
-
-std::string figures_heading(const char* other_unit) {
-    return row("", fmt::format("{:>17}{:>17}{:>16}{:>16}", "max, model units", "RMS, model units",
-                               fmt::format("max, {}", other_unit), fmt::format("RMS, {}", other_unit)));
-}
-
-/// Maximum and RMS in model units and in another.
-std::string figures_row(const char* name, double max, double rms, double unit) {
-    const auto other = [&](double value) { return unit > 0 ? number(value / unit) : std::string("-"); };
-    return row(name, fmt::format("{:>17}{:>17}{:>16}{:>16}", number(max), number(rms), other(max), other(rms)));
-}
-
-std::string density_text(double density, const char* per) {
-    return fmt::format("{:.3g} per {}{}", density, per,
-                       density < 1 ? " (fewer than one: detail between them is not measured)" : "");
-}
-
-std::string triangle_text(const Job& job, std::uint64_t number, const RecordedMesh::Triangle& triangle) {
-    return fmt::format("triangle {} of base triangle {}, generation {}, kept whole by: {}", number, triangle.base,
-                       triangle.generation, why_whole(job, triangle.stopped_by));
-}
-
-std::string place_text(const glm::dvec3& position) {
-    return fmt::format("({:.6g}, {:.6g}, {:.6g})", position.x, position.y, position.z);
-}
-
-std::string worst_rows(const char* name, const Job& job, const RecordedMesh& mesh, const DirectedError& error) {
-    if (!error.worst)
-        return {};
-    const WorstSpot& spot = *error.worst;
-    return row(name,
-               fmt::format("at {}, s t ({:.6g}, {:.6g})", place_text(spot.position), spot.texture.x, spot.texture.y)) +
-           row("", triangle_text(job, spot.triangle, mesh.triangles[spot.triangle]));
-}
-
-std::string surface_rows(const char* name, const SurfaceError& error, double texel) {
-    return fmt::format("  {}\n", name) +
-           figures_row("  reference to mesh", error.reference_to_mesh.max, error.reference_to_mesh.rms, texel) +
-           figures_row("  mesh to reference", error.mesh_to_reference.max, error.mesh_to_reference.rms, texel);
-}
-
 }  // namespace
 
 std::vector<Figure> error_figures(const Job& job, const RecordedMesh& mesh, const MeshError& error) {
     std::vector<Figure> all;
     FigureGroup figures(all, "measurement");
-    figures.add("triangles", mesh.triangles.size(), "triangle", "of the emitted mesh, mesh.ply");
+    figures.add("triangles", mesh.triangles.size(), "triangle",
+                job.hardware.culling == Culling::back
+                    ? "of the emitted mesh, mesh.ply, without culled ones (hardware.culling): reference to mesh "
+                      "measures the holes"
+                    : "of the emitted mesh, mesh.ply");
     figures.add("texel", error.texel, "model unit",
                 "a texel's length: mean over both axes of its area-weighted mean on the base surface");
     figures.add("reference_density", error.reference_density, "sample/texel",
-                "samples of the reference along each axis, at least; 4 unless the limit of samples lowered it");
+                "samples of the reference along each axis, at least; 4 unless the limit of samples lowered it; "
+                "with fewer than 1, detail between them is not measured");
     figures.add("mesh_density", error.mesh_density, "sample/texel",
                 "samples of the emitted mesh along each edge, at least; 1 unless the limit of samples lowered it");
+    figures.add("beyond_map", error.beyond_map, "sample", "of the reference beyond the map, which do not count");
     add_surface(all, "interpolated", error.interpolated, error.texel);
     add_surface(all, "nearest_texel", error.nearest_texel, error.texel);
     add_worst(all, "worst_reference_to_mesh", job, mesh, error.interpolated.reference_to_mesh);
     add_worst(all, "worst_mesh_to_reference", job, mesh, error.interpolated.mesh_to_reference);
     add_vertical(all, job, mesh, error);
     return all;
-}
-
-std::string error_text(const Job& job, const RecordedMesh& mesh, const MeshError& error) {
-    std::string text =
-        fmt::format("Error of the emitted mesh, {} triangles, against the displaced surface\n", mesh.triangles.size());
-    text += row("texel", fmt::format("{:.6g} model units", error.texel));
-    text += row("samples",
-                fmt::format("reference {}, {}; mesh {}, {}", error.interpolated.reference_to_mesh.samples,
-                            density_text(error.reference_density, "texel and axis"),
-                            error.interpolated.mesh_to_reference.samples, density_text(error.mesh_density, "texel")));
-    if (error.beyond_map > 0)
-        text +=
-            row("", fmt::format("on the map; {} samples of the reference beyond it do not count", error.beyond_map));
-    text += "\n" + figures_heading("texels");
-    text += surface_rows("map interpolated (the headline)", error.interpolated, error.texel);
-    text += surface_rows("map's nearest texel, unfiltered", error.nearest_texel, error.texel);
-    text += "\n";
-    text += worst_rows("worst, reference to mesh", job, mesh, error.interpolated.reference_to_mesh);
-    text += worst_rows("worst, mesh to reference", job, mesh, error.interpolated.mesh_to_reference);
-    text += "\n";
-    if (error.vertical) {
-        const VerticalError& vertical = *error.vertical;
-        text += figures_heading("map units");
-        text += figures_row("vertical, at grid points", vertical.max, vertical.rms, vertical.map_unit);
-        text += row("", fmt::format("{} grid points, {} covered by the mesh", vertical.grid_points, vertical.covered));
-        if (vertical.seen > 0)
-            text += row("", fmt::format("{} in the picture: {:.3g} pixels at most, {:.3g} RMS", vertical.seen,
-                                        vertical.max_pixels, vertical.rms_pixels));
-        if (vertical.covered > 0) {
-            text += row("worst, vertical", fmt::format("at {}, texel ({}, {})", place_text(vertical.worst_position),
-                                                       vertical.worst_texel.x, vertical.worst_texel.y));
-            text += row("", triangle_text(job, vertical.worst_triangle, mesh.triangles[vertical.worst_triangle]));
-        }
-    } else {
-        text += row("vertical, at grid points", "none: " + error.no_vertical);
-    }
-    if (job.hardware.culling == Culling::back)
-        text +=
-            "\n  hardware.culling = \"back\": culled triangles are not in mesh.ply; reference to mesh measures "
-            "the hole\n";
-    return text;
 }
 
 }  // namespace tessera

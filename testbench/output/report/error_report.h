@@ -10,11 +10,8 @@ namespace tessera {
 
 /// Figures of a mesh's error in groups: what was measured and how densely ("measurement"), the main figure
 /// ("interpolated") and the other sampling method ("nearest_texel"), height fields' error at the map's grid points
-/// ("vertical"), and the places of the maxima ("worst_..."). statistics_json() turns them into a file; infinite values
-/// (no mesh) are null there.
+/// ("vertical"), and the places of the maxima ("worst_..."). Infinite values (no mesh) are null in error.json. `job` is
+/// used for the tests' names and for remarks.
 std::vector<Figure> error_figures(const Job& job, const RecordedMesh& mesh, const MeshError& error);
-
-/// The same as a table for the terminal, main figure first. `job` is used for the tests' names and for remarks.
-std::string error_text(const Job& job, const RecordedMesh& mesh, const MeshError& error);
 
 }  // namespace tessera

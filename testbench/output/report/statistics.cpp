@@ -316,19 +316,11 @@ std::vector<Figure> collect_statistics(const MachineSetup& setup, const Simulati
     return all;
 }
 
-std::string statistics_json(const std::vector<Figure>& figures) {
-    nlohmann::ordered_json json;
-    for (const Figure& figure : figures) {
-        nlohmann::ordered_json entry;
-        std::visit([&](const auto& value) { entry["value"] = value; }, figure.value);
-        entry["unit"] = figure.unit;
-        entry["description"] = figure.description;
-        json[figure.group][figure.name] = std::move(entry);
-    }
-    return json.dump(2) + "\n";
-}
-
 namespace {
+
+std::string group_and_row(const Figure& figure) {
+    return figure.row.empty() ? figure.group : figure.group + "." + figure.row;
+}
 
 /// RFC 4180: fields with a comma or a quotation mark are quoted.
 std::string csv_cell(const std::string& value) {
@@ -342,12 +334,24 @@ std::string csv_cell(const std::string& value) {
 
 }  // namespace
 
+std::string statistics_json(const std::vector<Figure>& figures) {
+    nlohmann::ordered_json json;
+    for (const Figure& figure : figures) {
+        nlohmann::ordered_json entry;
+        std::visit([&](const auto& value) { entry["value"] = value; }, figure.value);
+        entry["unit"] = figure.unit;
+        entry["description"] = figure.description;
+        json[group_and_row(figure)][figure.name] = std::move(entry);
+    }
+    return json.dump(2) + "\n";
+}
+
 std::string statistics_csv(const std::vector<Figure>& figures) {
     std::string text = "name,value,unit,description\n";
     for (const Figure& figure : figures) {
         const std::string value = std::visit([](const auto& held) { return fmt::format("{}", held); }, figure.value);
-        text += fmt::format("{}.{},{},{},{}\n", figure.group, figure.name, csv_cell(value), csv_cell(figure.unit),
-                            csv_cell(figure.description));
+        text += fmt::format("{}.{},{},{},{}\n", group_and_row(figure), figure.name, csv_cell(value),
+                            csv_cell(figure.unit), csv_cell(figure.description));
     }
     return text;
 }

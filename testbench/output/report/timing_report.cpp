@@ -33,22 +33,6 @@ const Activity::Share* largest_share(const Unit& unit, State state) {
     return largest;
 }
 
-/// The causes of the states whose share of the cycles is not printed as 0.00.
-std::string whom(const Unit& unit, std::uint64_t cycles) {
-    std::string text;
-    for (const State state : {State::blocked, State::waiting_for_memory, State::starved}) {
-        const Activity::Share* share = largest_share(unit, state);
-        if (share == nullptr || share->cycles == 0 || state_percent(unit, state, cycles) < 0.005)
-            continue;
-        text += fmt::format("{}{} {}", text.empty() ? "" : ", ",
-                            state == State::blocked              ? "blocked by"
-                            : state == State::waiting_for_memory ? "waits for"
-                                                                 : "starved by",
-                            unit_name(*share->by));
-    }
-    return text;
-}
-
 }  // namespace
 
 std::string unit_name(const sc_core::sc_object& unit) {
@@ -236,29 +220,6 @@ std::string latency_text(const Pipeline& pipeline, std::uint64_t cycles, const B
         unit_name(longest));
 }
 
-std::string without_trailing_blanks(std::string line) {
-    line.erase(line.find_last_not_of(' ') + 1);
-    return line + "\n";
-}
-
-std::string unit_line(const Unit& unit, std::uint64_t cycles) {
-    const Activity& activity = unit.activity();
-    return without_trailing_blanks(
-        fmt::format("{:<40}{:>10}{:>9.2f}{:>8.2f}{:>9.2f}{:>9.2f}{:>13.2f}{:>12.2f}{:>9.3f}{:>6}  {}", unit_name(unit),
-                    activity.items_in(), state_percent(unit, State::busy, cycles),
-                    state_percent(unit, State::waiting_for_memory, cycles), state_percent(unit, State::blocked, cycles),
-                    state_percent(unit, State::starved, cycles), 100 * utilisation(unit, cycles),
-                    1000 * ratio(activity.items_in(), cycles), ratio(activity.item_cycles(), cycles),
-                    activity.high_water_mark(), whom(unit, cycles)));
-}
-
-std::string queue_line(const Unit& unit, std::uint64_t cycles) {
-    const Activity& activity = unit.activity();
-    return fmt::format("{:<40}{:>10}{:>12.2f}{:>12.3f}{:>10}\n", unit_name(unit), activity.items_in(),
-                       1000 * ratio(activity.items_in(), cycles), ratio(activity.item_cycles(), cycles),
-                       activity.high_water_mark());
-}
-
 }  // namespace
 
 std::string bottleneck_text(const Pipeline& pipeline, std::uint64_t cycles) {
@@ -266,41 +227,6 @@ std::string bottleneck_text(const Pipeline& pipeline, std::uint64_t cycles) {
     if (found.first.units.empty())
         return "none: no unit was busy";
     return found.binding ? binding_text(pipeline, cycles, found) : latency_text(pipeline, cycles, found);
-}
-
-std::string timing_tables(const Pipeline& pipeline, std::uint64_t cycles) {
-    std::string text =
-        fmt::format("{:<40}{:>10}{:>9}{:>8}{:>9}{:>9}{:>13}{:>12}{:>9}{:>6}  {}\n", "unit", "items", "busy", "memory",
-                    "blocked", "starved", "utilisation", "items/kcyc", "occup.", "most", "cause");
-    std::string queues =
-        fmt::format("{:<40}{:>10}{:>12}{:>12}{:>10}\n", "queue or join", "items", "items/kcyc", "mean level", "most");
-    for (const Unit* unit : pipeline.units())
-        if (is_queue_or_join(*unit))
-            queues += queue_line(*unit, cycles);
-        else
-            text += unit_line(*unit, cycles);
-    return text + "\n" + queues;
-}
-
-std::string timing_text(const Simulation& simulation) {
-    const std::uint64_t cycles = simulation.cycles();
-    std::string tables;
-    for (const auto& machine : simulation.machines)
-        tables += timing_tables(machine->pipeline, cycles) + "\n";
-    return fmt::format(
-               "{} cycles. In each a unit is in one state, the first of these that applies, in per cent of all cycles:\n"
-               "  blocked  a finished item is not taken\n"
-               "  busy     working on an item with all its inputs; in a memory: answering a request\n"
-               "  memory   table entries were requested and have not arrived\n"
-               "  starved  nothing to work on, or the other branch's results have not arrived\n"
-               "utilisation: items times initiation interval, in per cent of all cycles; 100 is the unit's maximum. "
-               "get_triangle and\ntessellation hold one triangle at a time, for its latency and the intervals of its further "
-               "parts. Memories: port slots\nof the busiest bank, or cycles in which a request waited, if more; off chip: "
-               "cycles of the channel, which caches use,\ntoo. items: taken; in a memory, requests. items/kcyc: in 1000 "
-               "cycles. occup.: items in the unit, on average; most:\nat a time. cause: the unit that delayed it longest in "
-               "each state. Queues and joins do no work: they have a rate and\na level.\n\n",
-               cycles) +
-           tables + "bottleneck: " + bottleneck_text(simulation.last_machine().pipeline, cycles) + "\n";
 }
 
 std::string queue_levels_csv(const LevelHistory& history) {

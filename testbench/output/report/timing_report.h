@@ -47,13 +47,6 @@ Bottleneck find_bottleneck(const Pipeline& pipeline, std::uint64_t cycles);
 /// The same in words, one or two sentences.
 std::string bottleneck_text(const Pipeline& pipeline, std::uint64_t cycles);
 
-/// Per unit and memory: cycles by state and cause, utilisation, throughput, occupancy; per queue and join: rate and
-/// level. Formatted for reading.
-std::string timing_tables(const Pipeline& pipeline, std::uint64_t cycles);
-
-/// timing.txt: an explanation of the columns, the tables of each machine, and the bottleneck of the last to finish.
-std::string timing_text(const Simulation& simulation);
-
 /// The Triangle Queue's level over time, in at most 1024 intervals: first cycle and highest level of each.
 std::string queue_levels_csv(const LevelHistory& history);
 

@@ -39,19 +39,19 @@ void run_figures(std::vector<Figure>& all, const Simulation& simulation) {
 /// Figures that queues and wires, which do no work, lack.
 void state_figures(FigureGroup& group, const Unit& unit, std::uint64_t cycles) {
     const Activity& activity = unit.activity();
-    group.add("busy", activity.cycles_in(State::busy), "cycle", "working on an item with all its inputs");
+    group.add("busy", activity.cycles_in(State::busy), "cycle", "working on an item with all its inputs", cycles);
     group.add("starved", activity.cycles_in(State::starved), "cycle",
-              "nothing to work on, or the other branch's results have not arrived");
+              "nothing to work on, or the other branch's results have not arrived", cycles);
     group.add("waiting_for_memory", activity.cycles_in(State::waiting_for_memory), "cycle",
-              "no item has all its inputs; table entries were requested and have not arrived");
-    group.add("blocked", activity.cycles_in(State::blocked), "cycle", "a finished item is not taken");
+              "no item has all its inputs; table entries were requested and have not arrived", cycles);
+    group.add("blocked", activity.cycles_in(State::blocked), "cycle", "a finished item is not taken", cycles);
     for (const Activity::Share& share : activity.shares()) {
         if (share.by == nullptr || share.cycles == 0)
             continue;
         const char* const what = share.state == State::blocked              ? "blocked_by_"
                                  : share.state == State::waiting_for_memory ? "waiting_for_"
                                                                             : "starved_of_";
-        group.add(what + unit_name(*share.by), share.cycles, "cycle", "of these");
+        group.add(what + unit_name(*share.by), share.cycles, "cycle", "of these", cycles);
     }
     group.add("utilisation", utilisation(unit, cycles), "1",
               "throughput as a fraction of the maximum: items times initiation interval, or port slots taken");
@@ -59,7 +59,7 @@ void state_figures(FigureGroup& group, const Unit& unit, std::uint64_t cycles) {
 
 void unit_figures(std::vector<Figure>& all, const Unit& unit, std::uint64_t cycles) {
     const Activity& activity = unit.activity();
-    FigureGroup group(all, "timing." + unit_name(unit));
+    FigureGroup group(all, "timing", unit_name(unit));
     group.add("items", activity.items_in(), "item", "taken; in a memory, requests");
     group.add("items_out", activity.items_out(), "item", "finished and sent on, or dropped as not needed");
     if (!is_queue_or_join(unit))
@@ -73,7 +73,7 @@ void unit_figures(std::vector<Figure>& all, const Unit& unit, std::uint64_t cycl
 
 void queue_figures(std::vector<Figure>& all, const Simulation& simulation, const TriangleQueue& queue) {
     const std::uint64_t entry = datapath::packed_triangle_bytes(simulation.setup.registers.formats);
-    FigureGroup group(all, "timing." + unit_name(queue));
+    FigureGroup group(all, "timing", unit_name(queue));
     group.add("capacity", simulation.setup.design.queue.capacity, "triangle", "on chip; 0: unbounded");
     group.add("on_chip_high_water_mark", queue.on_chip_high_water_mark(), "triangle",
               "most on chip, those on their way out included; the high-water mark, unless triangles were spilled");

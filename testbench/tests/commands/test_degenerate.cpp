@@ -222,11 +222,11 @@ TEST_CASE("a failed check ends with exit code 1, and the results are written") {
     INFO(attempt.end.text());
     REQUIRE(attempt.end.exit_code == 1);
     CHECK_THAT(attempt.end.out, Contains("more than the 0 % that check.allowed_flips allows"));
-    CHECK_THAT(attempt.end.out, Contains("CHECKS FAILED, see conformance.txt"));
+    CHECK_THAT(attempt.end.out, Contains("CHECKS FAILED, see report.txt"));
     CHECK_THAT(attempt.end.out, Contains("results in "));
     const RunFolder run(attempt.here.path() / "out");
     CHECK(run.conformance["passed"] == false);
     const std::map<std::string, std::string> files = run.files();
-    CHECK_THAT(files.at("conformance.txt"), Catch::StartsWith("Conformance report: FAILED\n"));
+    CHECK_THAT(files.at("report.txt"), Catch::StartsWith("Checks: FAILED: conformance"));
     CHECK(run.read_ply().faces == finished(run));
 }

@@ -156,7 +156,7 @@ TEST_CASE("a frame that fails ends the run with its exit code and its name") {
             here.path());
         INFO(end.text());
         CHECK(end.exit_code == 1);
-        CHECK_THAT(end.err, Contains("frame_002") && Contains("conformance.txt") && !Contains("frame_000"));
+        CHECK_THAT(end.err, Contains("frame_002") && Contains("report.txt") && !Contains("frame_000"));
         CHECK(names_in(here.path() / "out") == three_frames);
     }
     SECTION("a signal") {

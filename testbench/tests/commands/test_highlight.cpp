@@ -29,7 +29,7 @@ TEST_CASE("highlight run: the results are consistent, and every file names the t
     CHECK(alone > 500);
     CHECK(run.count("pass_or_tessellate", "split_in_highlight") >= alone);
     const auto files = run.files();
-    CHECK_THAT(files.at("conformance.txt"), Contains("  HT  "));
+    CHECK_THAT(files.at("report.txt"), Contains("  HT  "));
     CHECK_THAT(files.at("mesh.obj"), Contains("usemtl highlight_g") && Contains("Highlight Test alone"));
     CHECK_THAT(files.at("mesh.ply"), Contains("32 is added where the Highlight Test was true"));
     const auto queue_entry = run.count("formats", "queue_entry");

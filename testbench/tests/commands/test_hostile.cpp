@@ -139,5 +139,5 @@ TEST_CASE("repairs to mesh and map are reported and recorded") {
     const RunFolder run(here.path() / "out");
     CHECK(run.conformance["remarks"].size() == 2);
     for (const auto& remark : run.conformance["remarks"])
-        CHECK_THAT(run.files().at("conformance.txt"), Contains("  " + remark.get<std::string>() + "\n"));
+        CHECK_THAT(run.files().at("report.txt"), Contains("  " + remark.get<std::string>() + "\n"));
 }

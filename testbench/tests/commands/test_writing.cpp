@@ -198,7 +198,7 @@ TEST_CASE("an output that is a link is replaced, and its target stays") {
         }
     };
     check_replaced(run_arguments("1"), {run / "mesh.ply", run / "statistics.json", run / "trace.vcd"});
-    check_replaced({"compare", "out/run"}, {run / "error.txt", run / "error.json"});
+    check_replaced({"compare", "out/run"}, {run / "error.json"});
     check_replaced({"render", "out/run", "--size", "64x64", "--view", "shaded"}, {run / "shaded.png"});
     const fs::path out = here.path() / "out";
     check_replaced({"bake", (source_folder() / "testbench/examples/surfaces/dome.toml").string(), "--size", "16x16",
@@ -295,7 +295,7 @@ TEST_CASE("a file that cannot be removed or replaced leaves the earlier run unch
 
     // In a folder that never held a run all files stay.
     fs::remove_all(here.path() / "out");
-    for (const char* const name : {"error.txt", "shaded.png", "mesh.ply", "job.toml"}) {
+    for (const char* const name : {"error.json", "shaded.png", "mesh.ply", "job.toml"}) {
         fs::create_directories(run);
         write_all(run / name, "mine");
         const Files mine = files_in(run);

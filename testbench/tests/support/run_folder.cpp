@@ -113,8 +113,8 @@ void require_consistent(const RunFolder& run) {
         CHECK_FALSE(content.empty());
         names.push_back(name);
     }
-    std::vector<std::string> wanted{"conformance.json", "conformance.txt", "job.toml",
-                                    "mesh.ply",         "statistics.csv",  "statistics.json"};
+    std::vector<std::string> wanted{"conformance.json", "job.toml",       "mesh.ply",
+                                    "report.txt",       "statistics.csv", "statistics.json"};
     const auto job_says = [&](const char* words) { return files.at("job.toml").find(words) != std::string::npos; };
     if (!job_says("picture = false\n")) {
         wanted.push_back("picture.png");
@@ -124,7 +124,7 @@ void require_consistent(const RunFolder& run) {
     if (obj)
         wanted.emplace_back("mesh.obj");
     if (job_says("mode = \"timed\"\n"))
-        wanted.insert(wanted.end(), {"queue_levels.csv", "timing.txt"});
+        wanted.emplace_back("queue_levels.csv");
     std::sort(wanted.begin(), wanted.end());
     CHECK(names == wanted);
 
@@ -234,7 +234,8 @@ void require_consistent(const RunFolder& run) {
     if (run.conformance.contains("end_to_end"))
         CHECK(run.conformance["end_to_end"]["hardware_triangles"] == finished);
     CHECK(run.conformance["passed"] == true);
-    CHECK(files.at("conformance.txt").rfind("Conformance report: passed\n", 0) == 0);
+    CHECK(files.at("report.txt").rfind("Checks: passed\n", 0) == 0);
+    CHECK((files.at("report.txt").find("\ntiming\n") != std::string::npos) == timed);
 }
 
 void require_same_files(const std::map<std::string, std::string>& a, const std::map<std::string, std::string>& b) {

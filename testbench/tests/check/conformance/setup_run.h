@@ -37,7 +37,7 @@ struct SetupRun {
         Checks checks;
         checks.setup = result;
         CHECK_FALSE(checks.passed());
-        CHECK_THAT(conformance_text(checks), Catch::Contains(result.first_wrong) && Catch::Contains("Set-up: FAILED"));
+        CHECK_THAT(report_text(checks, {}), Catch::Contains(result.first_wrong) && Catch::Contains("FAILED: setup\n"));
     }
 
     BaseMesh mesh;

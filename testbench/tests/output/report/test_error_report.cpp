@@ -8,46 +8,8 @@
 #include "modules/datapath/height_tests.h"
 
 using namespace tessera;
-using Catch::Contains;
 
-// The reports of `tessera compare`: every column has its unit.
-
-TEST_CASE("error.txt: every figure is below its heading, in both units") {
-    MeshError error;
-    error.texel = 0.5;
-    error.interpolated.reference_to_mesh.max = 2;
-    error.interpolated.reference_to_mesh.rms = 0.25;
-    error.vertical.emplace();
-    error.vertical->max = 3;
-    error.vertical->rms = 1;
-    error.vertical->map_unit = 0.125;
-    const std::string text = error_text({}, {}, error);
-    INFO(text);
-    const auto line = [](std::string name, const std::string& columns) {
-        name.resize(34, ' ');
-        return "\n  " + name + columns + "\n";
-    };
-    CHECK_THAT(text, Contains(line("", " max, model units RMS, model units     max, texels     RMS, texels")));
-    CHECK_THAT(text, Contains(line("  reference to mesh",
-                                   "                2             0.25               4             0.5")));
-    CHECK_THAT(text, Contains(line("", " max, model units RMS, model units  max, map units  RMS, map units")));
-    CHECK_THAT(text, Contains(line("vertical, at grid points",
-                                   "                3                1              24               8")));
-}
-
-TEST_CASE("error.txt: fewer than one sample per texel is noted beside the density") {
-    MeshError error;
-    error.reference_density = 4;
-    error.mesh_density = 1;
-    const std::string few = " (fewer than one: detail between them is not measured)";
-    CHECK_THAT(error_text({}, {}, error), Contains("reference 0, 4 per texel and axis; mesh 0, 1 per texel\n"));
-    error.mesh_density = 0.125;
-    CHECK_THAT(error_text({}, {}, error),
-               Contains("reference 0, 4 per texel and axis; mesh 0, 0.125 per texel" + few + "\n"));
-    error.reference_density = 0.75;
-    CHECK_THAT(error_text({}, {}, error),
-               Contains("reference 0, 0.75 per texel and axis" + few + "; mesh 0, 0.125 per texel" + few + "\n"));
-}
+// The report of `tessera compare`.
 
 namespace {
 
@@ -66,6 +28,7 @@ MeshError distinct_error() {
     error.texel = 0.5;
     error.reference_density = 3;
     error.mesh_density = 0.75;
+    error.beyond_map = 9;
     const auto directed = [](double first) {
         WorstSpot spot;
         spot.position = {first + 1, first + 2, first + 3};
@@ -100,6 +63,7 @@ TEST_CASE("error.json: every figure is under its name") {
                                               {"measurement.texel", 0.5},
                                               {"measurement.reference_density", 3},
                                               {"measurement.mesh_density", 0.75},
+                                              {"measurement.beyond_map", 9},
                                               {"interpolated.hausdorff", 26},
                                               {"interpolated.hausdorff_texels", 52},
                                               {"nearest_texel.hausdorff", 46},
@@ -146,28 +110,10 @@ TEST_CASE("error.json: every figure is under its name") {
     CHECK(numbers == expected);
 }
 
-TEST_CASE(
-    "error.txt: the picture's figures, the densities, what lies beyond the map, and the samples have their rows") {
-    MeshError error = distinct_error();
-    error.beyond_map = 9;
-    const std::string text = error_text({}, two_triangles(), error);
-    INFO(text);
-    CHECK_THAT(text, Contains("105 in the picture: 106 pixels at most, 107 RMS\n"));
-    CHECK_THAT(text, Contains("101 grid points, 102 covered by the mesh\n"));
-    CHECK_THAT(text, Contains("reference 10, 3 per texel and axis; mesh 20, 0.75 per texel"));
-    CHECK_THAT(text, Contains("on the map; 9 samples of the reference beyond it do not count\n"));
-    CHECK_THAT(text, Contains("at (11, 12, 13), s t (14, 15)\n") && Contains("at (21, 22, 23), s t (24, 25)\n"));
-    CHECK_THAT(text, Contains("at (110, 111, 112), texel (108, 109)\n"));
-    error.beyond_map = 0;
-    CHECK_THAT(error_text({}, two_triangles(), error), !Contains("beyond"));
-}
-
-TEST_CASE("error.txt and error.json name the tests that the job has") {
+TEST_CASE("error.json names the tests that the job has") {
     Job job;
     const auto named = [&](const std::string& why, const std::string& splits) {
         INFO(why);
-        CHECK_THAT(error_text(job, two_triangles(), distinct_error()),
-                   Contains("triangle 1 of base triangle 7, generation 5, kept whole by: none: " + why + "\n"));
         for (const Figure& figure : error_figures(job, two_triangles(), distinct_error())) {
             if (figure.name == "why_whole")
                 CHECK(std::get<std::string>(figure.value) == "none: " + why);

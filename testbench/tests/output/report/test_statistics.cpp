@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "modules/datapath/widths.h"
+#include "testbench/output/report/figures_text.h"
 #include "testbench/tests/support/hand_made_run.h"
 
 // statistics.json and .csv: every figure of small runs derived by hand, and each counter of the machine in its figure.
@@ -25,7 +26,7 @@ struct Figures {
 
     explicit Figures(const std::vector<Figure>& figures) {
         for (const Figure& figure : figures) {
-            const std::string name = figure.group + "." + figure.name;
+            const std::string name = figure.group + "." + (figure.row.empty() ? "" : figure.row + ".") + figure.name;
             INFO(name);
             CHECK(numbers.count(name) + words.count(name) == 0);
             CHECK_FALSE(figure.description.empty());
@@ -298,10 +299,12 @@ TEST_CASE("statistics: spilled records are read back whole") {
 }
 
 TEST_CASE("statistics as text: JSON is by group, CSV has one row per figure") {
-    const std::vector<Figure> figures{{"run", "mode", std::string("timed"), "", "to the cycle, or not"},
-                                      {"run", "edges", std::uint64_t{18446744073709551615u}, "edge", "tested"},
-                                      {"a.b", "change", std::int64_t{-3}, "", "a \"signed\" one"},
-                                      {"a.b", "share", 0.25, "edge/triangle", "real"}};
+    std::vector<Figure> figures;
+    FigureGroup run(figures, "run"), other(figures, "a.b");
+    run.add("mode", "timed", "", "to the cycle, or not");
+    run.add("edges", UINT64_MAX, "edge", "tested");
+    other.add("change", -3, "", "a \"signed\" one");
+    other.add("share", 0.25, "edge/triangle", "real");
     CHECK(statistics_csv(figures) ==
           "name,value,unit,description\n"
           "run.mode,timed,,\"to the cycle, or not\"\n"
@@ -312,6 +315,42 @@ TEST_CASE("statistics as text: JSON is by group, CSV has one row per figure") {
     CHECK(json["run"]["edges"]["value"] == 18446744073709551615u);
     CHECK(json["a.b"]["change"] == nlohmann::json{{"value", -3}, {"unit", ""}, {"description", "a \"signed\" one"}});
     CHECK(json["a.b"]["share"]["value"] == 0.25);
+}
+
+TEST_CASE("statistics as text: a line for each figure, a table of the rows of a group") {
+    std::vector<Figure> figures;
+    FigureGroup run(figures, "run");
+    run.add("mode", "timed", "", "to the cycle, or not");
+    run.add("edges", std::uint64_t{59100}, "edge", "tested");
+    run.add("first_wrong", "", "", "nothing to show");
+    run.add("remedy", "a sentence of more than thirty-two characters", "", "what to do");
+    FigureGroup(figures, "timing").add("passed", false, "", "");
+    for (const char* const unit : {"transform", "normal_test"}) {
+        FigureGroup row(figures, "timing", unit);
+        row.add("busy", std::uint64_t{250}, "cycle", "at work", 1000);
+        row.add("share", 1.0 / 3, "1", "of the most");
+        row.add("note", "short", "", "");
+    }
+    FigureGroup queue(figures, "timing", "queue");
+    queue.add("share", 0.5, "1", "of the most");
+    queue.add("spilled", std::uint64_t{7}, "triangle", "written out");
+    CHECK(figures_text(figures) ==
+          "run\n"
+          "  mode    timed       to the cycle, or not\n"
+          "  edges   59100 edge  tested\n"
+          "  remedy  what to do\n"
+          "    a sentence of more than thirty-two characters\n"
+          "\n"
+          "timing\n"
+          "  passed  no\n"
+          "                busy     share  note\n"
+          "  transform    25.00  0.333333  short\n"
+          "  normal_test  25.00  0.333333  short\n"
+          "  queue                    0.5         spilled 7\n"
+          "    busy     % of 1000 cycle: at work\n"
+          "    share    1: of the most\n"
+          "    spilled  triangle: written out\n");
+    CHECK(nlohmann::json::parse(statistics_json(figures))["timing.queue"]["spilled"]["value"] == 7);
 }
 
 TEST_CASE("mesh counts: vertices and edges that triangles share count once") {

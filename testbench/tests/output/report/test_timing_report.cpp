@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "testbench/output/report/timing_statistics.h"
 #include "testbench/tests/support/timed_checks.h"
 
-// timing.txt of a machine that has not run: its units' activities are set by hand, over 1000 cycles, so that each
-// column holds a different figure.
+// Bottlenecks of a machine that has not run: its units' activities are set by hand, over 1000 cycles.
 
 using namespace tessera;
 using namespace tessera::testing;
@@ -38,83 +38,7 @@ void work_on(Unit& unit, std::uint64_t count, std::uint64_t first = 0) {
     }
 }
 
-std::string line_of(const std::string& text, const std::string& unit) {
-    const std::size_t begin = text.find("\n" + unit + " ");
-    REQUIRE(begin != std::string::npos);
-    return text.substr(begin + 1, text.find('\n', begin + 1) - begin - 1);
-}
-
 }  // namespace
-
-TEST_CASE("timing tables: each column of a unit has its figure") {
-    Machine m;
-    Activity& a = m.tests.normal_test.activity();
-    a.item_in(0);
-    a.item_in(0);
-    a.item_in(10);  // three items for 100 cycles
-    a.item_out(110);
-    a.item_out(110);
-    a.item_out(110);
-    a.set(0, State::waiting_for_memory, &m.pipeline.normal_map);
-    a.set(40, State::busy);
-    a.set(110, State::blocked, &m.tests.collector);
-    a.set(310, State::starved, &m.pipeline.transform);
-    a.set(410, State::starved);
-    a.finish(cycles);
-    const std::string text = timing_tables(m.pipeline, cycles);
-    CHECK_THAT(text, StartsWith("unit                                         items     busy  memory  blocked  "
-                                "starved  utilisation  items/kcyc   occup.  most  cause\n"));
-    // on average (2 * 10 + 3 * 100) / 1000 items are in it
-    CHECK(line_of(text, "tessellation_tests_0.normal_test") ==
-          "tessellation_tests_0.normal_test                 3     7.00    4.00    20.00    69.00         0.30"
-          "        3.00    0.320     3  blocked by tessellation_tests_0.collect_tests, waits for normal_map, "
-          "starved by transform");
-    // an idle unit counts as starved, with no unit named
-    m.pipeline.lighting.activity().finish(cycles);
-    CHECK(line_of(timing_tables(m.pipeline, cycles), "lighting") ==
-          "lighting                                         0     0.00    0.00     0.00   100.00         0.00"
-          "        0.00    0.000     0");
-}
-
-TEST_CASE("timing tables: of several units that block a unit the longest is named") {
-    Machine m;
-    Activity& a = m.tests.calculate_new_u.activity();
-    a.set(0, State::blocked, &m.tests.normal_test);
-    a.set(100, State::blocked, &m.tests.view_test);
-    a.set(300, State::blocked, &m.tests.normal_test);
-    a.set(390, State::blocked, &m.tests.tex_coord_test);
-    a.set(400, State::busy);
-    a.finish(cycles);
-    CHECK_THAT(line_of(timing_tables(m.pipeline, cycles), "tessellation_tests_0.calculate_new_u"),
-               EndsWith("  blocked by tessellation_tests_0.view_test"));
-}
-
-// Otherwise the queue would be "blocked" whenever something waits in it, and the joins "starved" permanently.
-TEST_CASE("timing tables: queues and joins have a rate and a level, and no states") {
-    Machine m;
-    Activity& queue = m.pipeline.triangle_queue.activity();
-    for (int k = 0; k < 5; ++k)
-        queue.item_in(0);
-    for (int k = 0; k < 5; ++k)
-        queue.item_out(500);
-    queue.set(0, State::blocked, &m.pipeline.get_triangle);
-    queue.finish(cycles);
-    work_on(m.tests.collector, 20);
-    const std::string text = timing_tables(m.pipeline, cycles);
-    CHECK_THAT(text,
-               EndsWith("queue or join                                items  items/kcyc  mean level      most\n"
-                        "tessellation_tests_0.collect_tests              20       20.00       0.020         1\n"
-                        "triangle_queue                                   5        5.00       2.500         5\n"));
-    CHECK(text.find("triangle_queue") == text.rfind("triangle_queue"));
-    CHECK(text.find("collect_tests") == text.rfind("collect_tests"));
-}
-
-TEST_CASE("timing tables: every unit and memory has a line") {
-    Machine m;
-    const std::string text = "\n" + timing_tables(m.pipeline, cycles);
-    for (const Unit* unit : m.pipeline.units())
-        CHECK(line_of(text, unit_name(*unit)).size() > 50);
-}
 
 TEST_CASE("utilisation: the share of occupied cycles, at most 1") {
     Machine m;
@@ -226,7 +150,8 @@ TEST_CASE("bottleneck: below 85 %, a unit that waits for a cache most of the tim
     work_on(m.pipeline.lighting, 500);
     Activity& waiting = m.tests.height_test.activity();
     waiting.set(0, State::waiting_for_memory, m.pipeline.height_table_cache.get());
-    waiting.finish(501);
+    waiting.set(501, State::waiting_for_memory, &m.pipeline.normal_map);  // less long
+    waiting.finish(600);
     CHECK_THAT(bottleneck_text(m.pipeline, cycles),
                Contains("(tessellation_tests_0.summed_height_test waits for summed_height_table_cache 50.1 %)"));
 }
@@ -250,24 +175,21 @@ TEST_CASE("bottleneck: an idle machine has none") {
 
 // 12 entries per edge through one port: 36 of the 86 cycles (modules/test_one_triangle.cpp). The bound is the nine
 // parts that four units pass on, one per cycle.
-TEST_CASE("timing.txt of one triangle: latency binds") {
+TEST_CASE("bottleneck of one triangle: latency binds") {
     Job job = timed_job();
     job.mesh.columns = job.mesh.rows = 1;
     job.map.source = MapSource::constant;
     MachineSetup setup = setup_of(job);
     setup.base_triangles.resize(1);
     TimedRun simulation(setup);
-    const std::string text = timing_text(simulation);
-    CHECK_THAT(text, StartsWith("86 cycles. "));
-    CHECK_THAT(text, Contains(timing_tables(simulation.pipeline, 86)));
-    CHECK_THAT(text,
-               Contains("\nbottleneck: none: bound by latency; of the busiest (summed_height_table) 41.9 % of the "
-                        "throughput is used; at most 2.4 times faster "));
-    CHECK_THAT(text, EndsWith("(an item stays 20.0 cycles in transform)\n"));
+    const std::string text = bottleneck_text(simulation.pipeline, simulation.cycles());
+    CHECK_THAT(text, StartsWith("none: bound by latency; of the busiest (summed_height_table) 41.9 % of the "
+                                "throughput is used; at most 2.4 times faster ") &&
+                         EndsWith("(an item stays 20.0 cycles in transform)"));
 }
 
 // The second machine has no base triangles.
-TEST_CASE("timing.txt of two machines: a table of each, and the bottleneck of the last one to finish") {
+TEST_CASE("timing of two machines: rows of each, and the bottleneck of the last one to finish") {
     Job job = timed_job();
     job.mesh.columns = job.mesh.rows = 1;
     job.map.source = MapSource::constant;
@@ -278,13 +200,20 @@ TEST_CASE("timing.txt of two machines: a table of each, and the bottleneck of th
     const HostedMachine &first = *simulation.machines[0], &second = *simulation.machines[1];
     CHECK(&simulation.last_machine() == &first);
     CHECK(second.pipeline.get_triangle.host_triangles() == 0);
-    const std::string text = timing_text(simulation);
-    CHECK_THAT(text, StartsWith("86 cycles. "));
-    CHECK_THAT(text, Contains("\n\n" + timing_tables(first.pipeline, 86) + "\n" + timing_tables(second.pipeline, 86) +
-                              "\nbottleneck: none: bound by latency; of the busiest (summed_height_table) "));
-    CHECK(line_of(text, "transform") != "");
+    std::vector<Figure> figures;
+    timing_figures(figures, simulation);
+    const auto items = [&](const std::string& unit) {
+        for (const Figure& figure : figures)
+            if (figure.row == unit && figure.name == "items")
+                return std::get<std::uint64_t>(figure.value);
+        return UINT64_MAX;
+    };
+    CHECK(items("transform") == 9);
     CHECK(unit_name(second.pipeline.transform) == "tessera_1.transform");
-    CHECK(line_of(text, "tessera_1.transform") != "");
+    CHECK(items("tessera_1.transform") == 0);
+    for (const Figure& figure : figures)
+        if (figure.name == "bottleneck_in_words")
+            CHECK(std::get<std::string>(figure.value) == bottleneck_text(first.pipeline, 86));
 }
 
 TEST_CASE("queue_levels.csv: each row has the first cycle of a stretch and its highest level") {
