@@ -124,12 +124,20 @@ class ContentHash:
 
 
 def figures_of(path, prefix=""):
-    """{"group.name": [value, unit]} of a JSON report; empty if there is none."""
-    if not path.is_file():
-        return {}
-    groups = {name: group for name, group in json.loads(path.read_text()).items() if isinstance(group, dict)}
-    return {f"{prefix}{group}.{name}": [figure["value"], figure["unit"]] for group, figures in groups.items()
-            for name, figure in figures.items() if isinstance(figure, dict) and "value" in figure}
+    """{"group.name": [value, unit]} of a JSON report; empty if there is none. Numbers without a unit beside them, as in
+    conformance.json, have the unit ""."""
+    def figures(name, part):
+        if isinstance(part, dict) and "value" in part:
+            yield name, [part["value"], part["unit"]]
+        elif isinstance(part, dict):
+            for key, member in part.items():
+                yield from figures(f"{name}.{key}", member)
+        elif type(part) in (int, float):
+            yield name, [part, ""]
+
+    report = json.loads(path.read_text()) if path.is_file() else {}
+    return {prefix + name: figure for group, part in report.items() if isinstance(part, dict)
+            for name, figure in figures(group, part)}
 
 
 def run(task, folder, longest):

@@ -12,7 +12,6 @@
 #include "testbench/commands/render_options.h"
 #include "testbench/commands/run_job.h"
 #include "testbench/commands/tune_options.h"
-#include "testbench/commands/widths_options.h"
 #include "testbench/common/error.h"
 #include "testbench/job/dump_job.h"
 
@@ -129,12 +128,6 @@ std::function<ExitCode()> read_command_line(int argc, const char* const* argv) {
     rank->add_option("--set", rank_order.settings, "set one key of the job first")->take_all()->allow_extra_args(false);
     rank->add_option("--data", data, "folder of `data:` paths in the job; default: $TESSERA_DATA");
 
-    CLI::App* const widths = app.add_subcommand(
-        "widths", "sweep the widths of number formats: flipped decisions, error and triangles at each width");
-    WidthsOptions widths_options;
-    widths_options.add_to(*widths);
-    widths->add_option("--data", data, "folder of `data:` paths in the job; default: $TESSERA_DATA");
-
     CLI::App* const keys = app.add_subcommand("keys", "print every key of a job file: unit, default, range, meaning");
 
     try {
@@ -150,7 +143,7 @@ std::function<ExitCode()> read_command_line(int argc, const char* const* argv) {
     if (app.get_subcommands().empty())
         throw InputError(
             "no command given: use `tessera run`, `tessera compare`, `tessera render`, `tessera bake`, "
-            "`tessera tune`, `tessera rank`, `tessera widths` or `tessera keys`; see `tessera --help`");
+            "`tessera tune`, `tessera rank` or `tessera keys`; see `tessera --help`");
     if ((job->count() > 0 && command.job_file.empty()) || (rank_job->count() > 0 && rank_order.job_file.empty()))
         throw InputError("JOB is empty: name a job file, or leave it out for the default job");
     if (keys->parsed())
@@ -168,8 +161,6 @@ std::function<ExitCode()> read_command_line(int argc, const char* const* argv) {
         return [order = tune_options.order(), data] { return tune_command(order, data); };
     if (rank->parsed())
         return [rank_order, data] { return rank_command(rank_order, data); };
-    if (widths->parsed())
-        return [order = widths_options.order(), data] { return widths_command(order, data); };
     command.data_folder = data;
     traces.apply_to(command);
     return [command] { return run_job(command); };

@@ -18,7 +18,7 @@ namespace tessera {
 /// same job with this; golden's own run (end_to_end.h) starts from it.
 ///
 /// The map's values are those of its file, in which golden itself replaces what is no height (NaN, map.no_data). Its
-/// codes are golden's own, of the job's width; `tessera widths` measures the effect of that width. Memory: 12
+/// codes are golden's own, of the job's width. Memory: 12
 /// bytes per texel.
 class GoldenJob {
   public:

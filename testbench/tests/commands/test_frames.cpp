@@ -298,8 +298,7 @@ TEST_CASE("tune, widths and rank print the notes on their inputs") {
     const Arguments inputs = set({"map.no_data=0.7", "map.width=32", "map.height=32", "mesh.source=lattice",
                                   "mesh.spacing=8", "hardware.height_test=summed_height"});
     for (const Arguments& command :
-         {Arguments{"tune", "--triangles", "60", "--vary", "none"},
-          Arguments{"widths", "--quantity", "normal", "--bits", "16..16"}, Arguments{"rank", "--output", "ranks"}}) {
+         {Arguments{"tune", "--triangles", "60", "--vary", "none"}, Arguments{"rank", "--output", "ranks"}}) {
         const TestFolder here;
         const ProgramEnd end = run_tessera(command + inputs, here.path());
         INFO(end.text());

@@ -207,9 +207,6 @@ TEST_CASE("an output that is a link is replaced, and its target stays") {
     check_replaced(
         {"tune", "--triangles", "60", "--set", "map.width=16", "--set", "map.height=16", "--output", "out/tuned.toml"},
         {out / "tuned.toml", out / "tuned.json"});
-    check_replaced({"widths", "--quantity", "normal", "--bits", "16..16", "--set", "map.width=16", "--set",
-                    "map.height=16", "--output", "out/widths.csv"},
-                   {out / "widths.csv", out / "widths.json"});
 }
 
 TEST_CASE("concurrent runs into one folder, through a link, leave one run there") {

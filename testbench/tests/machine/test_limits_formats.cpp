@@ -1,9 +1,9 @@
 #include <catch2/catch.hpp>
 #include <string>
 
-#include "testbench/explore/widths/width_run.h"
 #include "testbench/job/validate_job.h"
 #include "testbench/machine/resolve_job.h"
+#include "testbench/prove/exact_arithmetic/exact_comparison.h"
 #include "testbench/tests/support/case_table.h"
 #include "testbench/tests/support/checked_run.h"
 #include "testbench/tests/support/job_settings.h"
@@ -47,17 +47,17 @@ const std::string cylinder =
     "displacement.scale=0.1 hardware.queue_capacity=8 ";  // what is spilled is packed by the formats
 
 /// Compares the datapath without SystemC, which equals the machine, with exact arithmetic.
-void check(const WidthRun& run) {
+void check(const ExactComparison& run) {
     INFO(run.conformance.first_mismatch);
     CHECK(run.conformance.mismatches == 0);
     INFO(run.invariants.first_violation);
     CHECK(run.invariants.passed());
 }
 
-WidthRun width_run_of(const Job& job) {
+ExactComparison comparison_of(const Job& job) {
     validate(job);
     const auto [mesh, map, resolved] = load_inputs(job);
-    return run_widths(make_setup(resolved.job, mesh, map), ExactModel(resolved.job, mesh, map), 1'000'000);
+    return compare_with_exact(make_setup(resolved.job, mesh, map), ExactModel(resolved.job, mesh, map), 1'000'000);
 }
 
 struct Row {
@@ -78,7 +78,7 @@ const CaseTable meshes("formats: ",
                        },
                        [](const Row& row) {
                            const Job job = with_settings({}, "mode=timed " + row.job + row.formats);
-                           check(width_run_of(job));
+                           check(comparison_of(job));
                            const CheckedRun run(job);
                            CHECK(run.counts.edges_split > 0);
                            CHECK(run.setup.input_saturations.position == 0);

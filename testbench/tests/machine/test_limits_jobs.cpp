@@ -3,11 +3,11 @@
 #include <limits>
 
 #include "testbench/common/error.h"
-#include "testbench/explore/widths/width_run.h"
 #include "testbench/job/job_keys.h"
 #include "testbench/job/read_job.h"
 #include "testbench/job/validate_job.h"
 #include "testbench/machine/inputs.h"
+#include "testbench/prove/exact_arithmetic/exact_comparison.h"
 #include "testbench/tests/support/job_settings.h"
 #include "testbench/tests/support/refusals.h"
 
@@ -71,7 +71,7 @@ std::string outcome_of(const Job& job) {
         validate(job);
         const auto [mesh, map, resolved] = load_inputs(job);
         const MachineSetup setup = make_setup(resolved.job, mesh, map);
-        const WidthRun run = run_widths(setup, ExactModel(resolved.job, mesh, map), 300'000);
+        const ExactComparison run = compare_with_exact(setup, ExactModel(resolved.job, mesh, map), 300'000);
         INFO(run.conformance.first_mismatch);
         INFO(run.invariants.first_violation);
         CHECK(run.conformance.mismatches == 0);

@@ -4,20 +4,17 @@
 
 #include "testbench/check/conformance/conformance_result.h"
 #include "testbench/check/conformance/end_to_end.h"
-#include "testbench/check/conformance/texel_borders.h"
 #include "testbench/check/mesh/invariants.h"
-#include "testbench/explore/widths/exact_model.h"
 #include "testbench/machine/machine_setup.h"
+#include "testbench/prove/exact_arithmetic/exact_model.h"
 
 namespace tessera {
 
 /// The decisions that are compared with those of the exact model.
 enum class Decided { normal, summed_height, view, tex_coord, generation, highlight, split, count };
-inline constexpr std::array<const char*, static_cast<std::size_t>(Decided::count)> decided_names = {
-    "NT", "SHT", "VT", "TCT", "GT", "HT", "split"};
 
 /// The results of a job with one set of formats.
-struct WidthRun {
+struct ExactComparison {
     // As in statistics.json and conformance.json of `tessera run`.
     std::uint64_t triangles = 0;
     std::uint64_t edges = 0;  ///< tested
@@ -30,9 +27,6 @@ struct WidthRun {
     /// Number of edges on which a decision differs from the exact model, which follows the machine's splits: every
     /// vertex has its exact counterpart, and every edge is decided again from these.
     std::array<std::uint64_t, static_cast<std::size_t>(Decided::count)> flips{};
-    std::uint64_t quadrilaterals = 0;  ///< remaining where two edges were split
-    std::uint64_t diagonal_flips = 0;  ///< of these: cut along another diagonal than with exact vertices
-    TexelBorderCount texel_borders;
     /// Distance of P' from its exact counterpart, over base and inserted vertices; model units.
     std::uint64_t positions = 0;
     double position_max = 0;
@@ -40,14 +34,9 @@ struct WidthRun {
     double position_lsb = 0;  ///< one LSB of the position in model units
 
     std::uint64_t flips_of(Decided decided) const { return flips[static_cast<std::size_t>(decided)]; }
-    /// Percentage of the edges.
-    double percent(std::uint64_t flipped) const {
-        return edges == 0 ? 0 : 100.0 * static_cast<double>(flipped) / static_cast<double>(edges);
-    }
-    double split_flips_percent() const { return percent(flips_of(Decided::split)); }
 };
 
 /// Runs the bare datapath: functional mode's results. Throws ResourceError beyond `most_triangles`.
-WidthRun run_widths(const MachineSetup& setup, const ExactModel& exact, std::uint64_t most_triangles);
+ExactComparison compare_with_exact(const MachineSetup& setup, const ExactModel& exact, std::uint64_t most_triangles);
 
 }  // namespace tessera

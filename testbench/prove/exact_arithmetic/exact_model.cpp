@@ -1,4 +1,4 @@
-#include "testbench/explore/widths/exact_model.h"
+#include "testbench/prove/exact_arithmetic/exact_model.h"
 
 #include <algorithm>
 #include <cmath>
@@ -126,14 +126,8 @@ std::vector<std::array<golden::Vertex, 3>> ExactModel::corners_of(const MachineS
             result.push_back(exact);
     }
     if (result.size() != setup.base_triangles.size())
-        throw std::logic_error("widths: a base triangle was not found in the exact model");
+        throw std::logic_error("exact model: a base triangle was not found in the exact model");
     return result;
-}
-
-std::uint64_t ExactModel::triangles(std::uint64_t bound) const {
-    const golden::Tessellation run =
-        golden::tessellate(base_, map_, parameters_, bound, [](const golden::Triangle&) {});
-    return run.bound_hit ? 0 : run.triangles_emitted;
 }
 
 }  // namespace tessera

@@ -1,4 +1,4 @@
-#include "testbench/explore/widths/width_run.h"
+#include "testbench/prove/exact_arithmetic/exact_comparison.h"
 
 #include <fmt/format.h>
 
@@ -30,11 +30,10 @@ class Walk {
           datapath_(setup),
           inputs_(setup),
           scoreboard_(setup.registers, inputs_),
-          borders_(setup.registers.formats),
           dequantise_(setup.registers.formats),
           base_corners_(exact.corners_of(setup)) {}
 
-    WidthRun run() {
+    ExactComparison run() {
         result_.edges = datapath_.walk(*this);
         return finish();
     }
@@ -48,17 +47,14 @@ class Walk {
         return exact;
     }
 
-    void decided(const datapath::TrianglePass& pass, const datapath::ChildIndices& children, const Corners& exact) {
+    void decided(const datapath::TrianglePass& pass, const datapath::ChildIndices&, const Corners& exact) {
         scoreboard_.write(pass);
-        borders_.write(pass);
         std::copy(exact.begin(), exact.end(), vertices_.begin());
         for (std::size_t k = 0; k < 3; ++k)
             vertices_[3 + k] = compare_edge(pass, k, exact);
         for (std::size_t k = 0; k < 3; ++k)
             if ((pass.split >> k & 1u) != 0)
                 compare_position(pass.new_vertex[k].displaced, vertices_[3 + k]);
-        if (children.count == 3)
-            compare_diagonal(pass.split, children);
     }
 
     Corners child(const std::array<std::uint8_t, 3>& corners) const {
@@ -98,16 +94,6 @@ class Walk {
         return golden.inserted.vertex;
     }
 
-    void compare_diagonal(unsigned split, const datapath::ChildIndices& machine) {
-        const golden::Subdivision cut = golden::subdivide({(split & 1) != 0, (split & 2) != 0, (split & 4) != 0},
-                                                          vertices_, exact_.parameters().diagonal);
-        // Both list the quadrilateral's halves in the same order.
-        const auto& a = machine.children[1];
-        const auto& b = cut.children[1];
-        ++result_.quadrilaterals;
-        result_.diagonal_flips += std::equal(a.begin(), a.end(), b.begin(), b.end()) ? 0u : 1u;
-    }
-
     void compare_position(const datapath::Position& machine, const golden::Vertex& exact) {
         const double distance = glm::length(setup_.model_scale.to_model(dequantise_.position(machine)) -
                                             exact_.model_scale().to_model(exact.displaced_position));
@@ -116,12 +102,11 @@ class Walk {
         result_.position_max = std::max(result_.position_max, distance);
     }
 
-    WidthRun finish() {
+    ExactComparison finish() {
         mesh_.sort();
         result_.triangles = mesh_.triangles.size();
         result_.conformance = scoreboard_.result();
         result_.invariants = check_invariants(mesh_, setup_);
-        result_.texel_borders = borders_.count();
         result_.end_to_end = compare_end_to_end(setup_, inputs_, mesh_);
         result_.saturations = datapath_.saturations;
         result_.saturations += others_;
@@ -137,7 +122,6 @@ class Walk {
     BareRecursion datapath_;
     GoldenInputs inputs_;
     Scoreboard scoreboard_;
-    TexelBorders borders_;
     Dequantise dequantise_;
     std::vector<Corners> base_corners_;
     std::size_t next_base_ = 0;
@@ -145,12 +129,12 @@ class Walk {
     EmittedMesh mesh_;
     datapath::Saturations others_;  // of everything outside the bare recursion
     double squares_ = 0;
-    WidthRun result_;
+    ExactComparison result_;
 };
 
 }  // namespace
 
-WidthRun run_widths(const MachineSetup& setup, const ExactModel& exact, std::uint64_t most_triangles) {
+ExactComparison compare_with_exact(const MachineSetup& setup, const ExactModel& exact, std::uint64_t most_triangles) {
     return Walk(setup, exact, most_triangles).run();
 }
 

@@ -27,9 +27,6 @@ class ExactModel {
     /// triangles of the mesh that collapse in its formats.
     std::vector<std::array<golden::Vertex, 3>> corners_of(const MachineSetup& setup) const;
 
-    /// Triangles of the whole mesh by the exact model's decisions; 0: more than `bound`.
-    std::uint64_t triangles(std::uint64_t bound) const;
-
   private:
     golden::Vertex base_vertex(const BaseVertex& vertex, bool beyond_map) const;
 
