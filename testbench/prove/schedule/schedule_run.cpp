@@ -10,8 +10,10 @@
 #include <numeric>
 #include <sstream>
 #include <stdexcept>
+#include <string_view>
 #include <vector>
 
+#include "modules/timing/all_units.h"
 #include "modules/units/pass_or_tessellate.h"
 #include "testbench/common/child_process.h"
 #include "testbench/common/hash.h"
@@ -45,26 +47,16 @@ class ItemTimes : public ActivityObserver, public schedule::ItemObserver {
 using Units = std::array<Unit*, schedule::units>;
 
 Units units_of(Pipeline& machine) {
-    TessellationTests& tests = machine.tessellation_tests[0];
     Units units{};
-    units[schedule::get_triangle] = &machine.get_triangle;
-    units[schedule::calculate_new_p] = &machine.calculate_new_p;
-    units[schedule::displace_vertex] = &machine.displace_vertex;
-    units[schedule::transform] = &machine.transform;
-    units[schedule::pass_or_tessellate] = &machine.pass_or_tessellate;
-    units[schedule::tessellation] = &machine.tessellation;
-    units[schedule::triangle_queue] = &machine.triangle_queue;
-    units[schedule::lighting] = &machine.lighting;
+    for (Unit* const unit : machine.units())
+        for (std::size_t k = 0; k < all_units.size(); ++k)
+            if (unit->basename() == std::string_view(all_units[k].name))
+                units[k] = unit;
+    units[schedule::height_test] = &machine.tessellation_tests[0].height_test;
     units[schedule::displacement_map] = &machine.displacement_map;
     units[schedule::displacement_map_for_tests] = machine.displacement_map_for_tests.get();
     units[schedule::normal_map] = &machine.normal_map;
     units[schedule::height_table] = &machine.height_table;
-    units[schedule::calculate_new_u] = &tests.calculate_new_u;
-    units[schedule::tex_coord_test] = &tests.tex_coord_test;
-    units[schedule::height_test] = &tests.height_test;
-    units[schedule::normal_test] = &tests.normal_test;
-    units[schedule::view_test] = &tests.view_test;
-    units[schedule::collect_tests] = &tests.collector;
     return units;
 }
 

@@ -1,32 +1,23 @@
 #pragma once
 #include <cstdint>
 
+#include "modules/timing/timing.h"
+
 namespace tessera::schedule {
 
-/// A unit's number in the machine.
+/// A unit's number in the machine: those of all_units.h, then memories and the rasteriser.
 using Unit = std::uint8_t;
 constexpr Unit nobody = 255;
 
 enum : Unit {
-    get_triangle,
-    calculate_new_p,
-    displace_vertex,
-    transform,
-    pass_or_tessellate,
-    tessellation,
-    triangle_queue,
-    lighting,
-    displacement_map,
+#define TESSERA_NUMBER(name, ...) name,
+    TESSERA_FOR_EACH_UNIT(TESSERA_NUMBER, TESSERA_NUMBER)
+#undef TESSERA_NUMBER
+        displacement_map,
     displacement_map_for_tests,
     normal_map,
     height_table,
     rasteriser,
-    calculate_new_u,
-    tex_coord_test,
-    height_test,
-    normal_test,
-    view_test,
-    collect_tests,
     units
 };
 

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdint>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -98,9 +99,32 @@ inline void require_conservation(const Simulation& simulation) {
     }
 }
 
+/// Adds the units that a triangle's parts reach, from this one on, before they are joined or tested.
+inline void follow_parts(const Pipeline& p, const sc_core::sc_object& unit, std::set<std::string>& units) {
+    if (dynamic_cast<const JoiningUnit*>(&unit) != nullptr || unit.get_parent_object() != &p)
+        return;
+    units.insert(unit.basename());
+    for_each_output(dynamic_cast<const sc_core::sc_module&>(unit), [&](const auto& output) {
+        if (output.input() != nullptr)
+            follow_parts(p, *output.input()->get_parent_object(), units);
+    });
+}
+
+/// The bound streams lead a triangle's parts through the units that the list of units says, over which
+/// triangles_ahead_of_parts sums.
+inline void require_listed_geometry(const Pipeline& p) {
+    std::set<std::string> bound, listed;
+    follow_parts(p, *p.get_triangle.to_calculate_new_p.input()->get_parent_object(), bound);
+    for (const UnitSpec& unit : all_units)
+        if (unit.place == Place::geometry)
+            listed.insert(unit.name);
+    CHECK(bound == listed);
+}
+
 /// The items that Tessellation and the height test of a timed machine receive.
 inline void require_timed_conservation(const Simulation& simulation, const HostedMachine& machine) {
     const Pipeline& p = machine.pipeline;
+    require_listed_geometry(p);
     const auto& made = p.tessellation.made_into();
     const std::uint64_t untested = simulation.setup.design.work == Work::family ? p.get_triangle.host_triangles() : 0;
     CHECK(p.tessellation.activity().items_in() == untested + made[1] + made[2] + made[3] + made[4]);
