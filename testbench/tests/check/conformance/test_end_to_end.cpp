@@ -12,6 +12,7 @@
 #include "testbench/input/mesh/built_in.h"
 #include "testbench/machine/resolve_job.h"
 #include "testbench/tests/check/conformance/scoreboard_cases.h"
+#include "testbench/tests/check/conformance/setup_run.h"
 #include "testbench/tests/support/edited_mesh.h"
 
 using namespace tessera;
@@ -356,4 +357,23 @@ TEST_CASE("the golden run passes within the allowed differences in either direct
     }
     result.bound_hit = true;
     CHECK_FALSE(result.passed());
+}
+
+TEST_CASE("on a cylinder the allowed distance includes the rounding and turning of normals") {
+    Job job;
+    job.mesh.source = MeshSource::cylinder;
+    job.mesh.columns = 8;
+    job.tests.generation_limit = 4;
+    job.displacement.scale = 0.5;
+    job.displacement.bias = -0.2;
+    SetupRun run{job};
+    const SetupResult checked = run.check();
+    const EndToEndResult result =
+        GoldenRun(run.setup, run.golden, checked.base_triangles).compare(run.simulation.monitor.mesh, 1);
+    CHECK(result.passed());
+    REQUIRE(result.golden_largest_generation == 4);
+    CHECK(result.allowed.rounding == Approx(std::sqrt(3.0) * (4 * std::ldexp(1.0, -16) / run.setup.model_scale.scale +
+                                                              10 * std::ldexp(1.0, -14) * 0.3)));
+    // Neighbouring normals are 45 degrees apart: 2 sin 22.5.
+    CHECK(result.allowed.displacement == Approx(0.5 + 0.3 * 0.765366865));
 }

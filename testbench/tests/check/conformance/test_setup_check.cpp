@@ -587,25 +587,6 @@ TEST_CASE("the golden run is judged by its triangles, the distance of the surfac
     CHECK_THAT(report_text(checks, {}), Contains("golden's run was stopped at 1040 triangles"));
 }
 
-TEST_CASE("on a cylinder the allowed distance includes the rounding and turning of normals") {
-    Job job;
-    job.mesh.source = MeshSource::cylinder;
-    job.mesh.columns = 8;
-    job.tests.generation_limit = 4;
-    job.displacement.scale = 0.5;
-    job.displacement.bias = -0.2;
-    SetupRun run{job};
-    const SetupResult checked = run.check();
-    const EndToEndResult result =
-        GoldenRun(run.setup, run.golden, checked.base_triangles).compare(run.simulation.monitor.mesh, 1);
-    CHECK(result.passed());
-    REQUIRE(result.golden_largest_generation == 4);
-    CHECK(result.allowed.rounding == Approx(std::sqrt(3.0) * (4 * std::ldexp(1.0, -16) / run.setup.model_scale.scale +
-                                                              10 * std::ldexp(1.0, -14) * 0.3)));
-    // Neighbouring normals are 45 degrees apart: 2 sin 22.5.
-    CHECK(result.allowed.displacement == Approx(0.5 + 0.3 * 0.765366865));
-}
-
 TEST_CASE("a base triangle's periods are known where a period is one LSB") {
     SetupRun run{testing::with_settings({},
                                         "map.source=noise map.width=1 map.height=1 map.address_u=repeat "
