@@ -102,9 +102,11 @@ std::string checks_rows(const Checks& checks) {
         if (i.open_texture_seam_edges > 0)
             text +=
                 row("texture seams",
-                    fmt::format("{} edges open: the map, or a table made from it, is not continuous across a seam of "
-                                "this mesh's texture coordinates",
-                                count(i.open_texture_seam_edges)));
+                    fmt::format(
+                        "{} edges open: the map, or a table made from it, is not continuous across a seam of "
+                        "this mesh's texture coordinates; make it alike on both sides, or unwrap the mesh without a "
+                        "seam there",
+                        count(i.open_texture_seam_edges)));
     }
     if (checks.work)
         text += check_row(

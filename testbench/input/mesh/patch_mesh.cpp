@@ -208,7 +208,9 @@ BaseMesh make_patch_mesh(const BezierPatches& patches, std::int64_t columns, std
                         without_normal));
     }
     complete_smooth_normals(mesh);
-    for (std::string& flaw : surface_flaws(mesh))
+    constexpr const char* smooth_normals =
+        "Move the points beside a common border of patches so that both have one tangent plane there.";
+    for (std::string& flaw : surface_flaws(mesh, largest_search, smooth_normals))
         mesh.repairs.push_back(std::move(flaw));
     complete_tangent_frames(mesh);
     measure_texture_scale(mesh);

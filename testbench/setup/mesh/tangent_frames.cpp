@@ -232,7 +232,8 @@ void complete_tangent_frames(BaseMesh& mesh) {
         if (count > 0)
             mesh.repairs.push_back(fmt::format(fmt::runtime(sentence), count));
     };
-    say(flat_texture, "{} triangle(s) have no area in texture space and do not define a tangent.");
+    say(flat_texture,
+        "{} triangle(s) have no area in texture space and do not define a tangent: unwrap them with an area in the map.");
     if (turned > 0)
         mesh.repairs.push_back(fmt::format(
             "At {} point(s) triangles without area in texture space connect parts of the texture that lie in different "
@@ -248,10 +249,10 @@ void complete_tangent_frames(BaseMesh& mesh) {
     say(torn,
         "At {} point(s) the texture is mirrored in some triangles and not in others, with the same texture "
         "coordinates: they have no tangent, so that the surface stays closed, and their normals are those of the base "
-        "mesh.");
+        "mesh. To give them one, unwrap the mirrored part to a place of its own in the map.");
     say(blank,
         "{} triangle(s) have only such points, and the map does not show in their normals: cut them so that each has a "
-        "corner off the mirrored edges, or unwrap the mirrored part to a place of its own in the map.");
+        "corner off the mirrored edges.");
     say(slips,
         "At {} point(s) a few small triangles are mirrored in texture space against the others around them, whose "
         "tangent they get: the normals in these triangles are wrong. Unwrap the mesh without triangles turned over.");
