@@ -131,7 +131,7 @@ std::string test_of(const std::string& name, datapath::HeightTest kind) {
     return has_register(kind, false, false, name) ? functions_of(kind).title() : "view-dependent Rank Test";
 }
 
-struct Place {
+struct RegisterPlace {
     std::string register_name;
     std::string name;  ///< name of one value of the register
     std::uint32_t offset;
@@ -140,8 +140,8 @@ struct Place {
 };
 
 /// The places of the machine's registers, over all designs.
-std::vector<Place> machine_places() {
-    std::vector<Place> places;
+std::vector<RegisterPlace> machine_places() {
+    std::vector<RegisterPlace> places;
     std::uint32_t next = offset::machine;
     for (std::size_t number = 0; number < datapath::height_tests().size(); ++number) {
         const auto kind = static_cast<datapath::HeightTest>(number);
@@ -177,7 +177,7 @@ std::vector<RegisterBit> register_bits() {
 
 std::vector<DeviceRegister> register_map(const datapath::Registers& reset, const LargestMap& largest) {
     std::vector<DeviceRegister> map = control_registers(reset.formats, largest);
-    const std::vector<Place> places = machine_places();
+    const std::vector<RegisterPlace> places = machine_places();
     auto place = places.begin();
     datapath::visit_registers(reset, [&](const datapath::Register& field, const auto& values) {
         const std::string name = field.name;

@@ -10,6 +10,7 @@
 
 #include "modules/sockets/packed_item.h"
 #include "modules/stage/stage_steps.h"
+#include "modules/units/families/tessellation.h"
 #include "testbench/tests/modules/named_machine.h"
 #include "testbench/tests/modules/rtl_displace_vertex.h"
 #include "testbench/tests/modules/unit_behind.h"
