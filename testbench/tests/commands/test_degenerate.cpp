@@ -178,7 +178,7 @@ TEST_CASE("checks and files that are switched off are omitted") {
     INFO(attempt.end.text());
     REQUIRE(attempt.end.exit_code == 0);
     const RunFolder run(attempt.here.path() / "out");
-    CHECK(run.files().size() == 7);
+    CHECK(run.files().size() == 6);
     CHECK_FALSE(run.conformance.contains("conformance"));
     CHECK_FALSE(run.conformance.contains("invariants"));
     CHECK_THAT(attempt.end.out, Contains("nothing was checked"));
