@@ -95,7 +95,7 @@ void check_ends_well(const std::vector<std::string>& arguments, const fs::path& 
             CHECK_THAT(end.err, !Contains(".tessera-"));
         }
     }
-    CHECK(failures > calls / 2);
+    CHECK(failures >= calls / 2);  // of one file three: opened, written, renamed
 }
 
 Files files_after(const std::vector<std::string>& arguments, const fs::path& folder) {
