@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -222,9 +223,10 @@ TEST_CASE("height tests: reads that are not as declared are named with their lim
 
 TEST_CASE("height tests: the bare machine refuses reads that are not as declared, or outside the table") {
     const auto said = [](const char* name, AnyReads::Adds adds) -> std::string {
-        AnyReads* const test = new AnyReads(adds);  // for the rest of the process
-        test->name = name;
-        Registers r = registers_of(add_height_test(*test));
+        static std::deque<AnyReads> added;  // for the rest of the process, as add_height_test() requires
+        AnyReads& test = added.emplace_back(adds);
+        test.name = name;
+        Registers r = registers_of(add_height_test(test));
         Tables tables = make_tables(r, std::vector<std::uint32_t>(48 * 32), {});
         const Machine machine(r, std::move(tables));
         try {
