@@ -26,7 +26,7 @@ class SummedHeightTest : public HeightTestFunctions {
     constexpr SummedHeightTest() : HeightTestFunctions("summed_height", 3) {
         work = "three rectangles, twelve reads";
         arithmetic = "add, compare";
-        latency = 3;  // differences, addresses, compare
+        latency = 3;  // differences, addresses, compare; all counted after the last entry
         rectangles = true;
         codes = 1;
         values = {{{"width", 16},

@@ -84,7 +84,8 @@ struct Triangle {
     /// VT, TCT, GT bits: the tests that prevented a split requested by NT, SHT or HT.
     std::uint8_t stopped_by = 0;
     bool finished = false;  ///< no edge splits; one more pass calculates its normals in screen space
-    /// Bit k: edge k was tested with the parent and not split, so it never will be. 0 unless Formats::final_edges.
+    /// Bit k: edge k was tested with the parent and not split, so it never will be. 0 unless Formats::final_edges
+    /// or families.
     std::uint8_t final_edges = 0;
     std::uint32_t parent = 0;  ///< the pass in which its parent was split: for information only
     /// Formats::families: a triangle in the queue will be split; split_by and parent are those of its children.

@@ -23,7 +23,7 @@ namespace tessera {
 ///            order. A response other than OK becomes the request's.
 /// Functional mode: b_transport for each entry; DMI and debug transport are passed on.
 /// Limit:     Design::answer_cycles, of the ports joined to it.
-/// Construct it before the units that use it: it attaches itself to the clock.
+/// Attaches itself to the clock.
 class BaseProtocolBridge : public MemoryServer, public tlm::tlm_mm_interface {
   public:
     tlm_utils::simple_initiator_socket<BaseProtocolBridge> to_memory{"to_memory"};

@@ -21,7 +21,7 @@ namespace tessera {
 /// Off chip it extends to the end of its last line. Read by units, written only by the host's debug transport before
 /// the run.
 /// Timing: on chip banked_ports.h; for a table in off-chip memory, which a cache reads line by line (table_cache.h),
-/// the channel shared by all off-chip memory. b_transport, DMI: the latency, once per request.
+/// the channel shared by all off-chip memory. b_transport, DMI: the latency, once per entry.
 /// Utilisation: the fraction of the busiest bank's port slots taken, or of cycles in which a request was held up,
 /// whichever is greater: bank conflicts delay requests while most ports are idle.
 /// Errors: a write gives TLM_COMMAND_ERROR_RESPONSE, an address out of range TLM_ADDRESS_ERROR_RESPONSE.
@@ -80,14 +80,14 @@ class DisplacementMap : public TableMemory {
     using TableMemory::TableMemory;
 };
 
-/// The normal map: three signed components per texel, in the tangent frame. Read by the Normal Test.
+/// The normal map: three signed components per texel, in the tangent frame. Read by the Normal Test, in the
+/// family design also by Displace Vertex.
 class NormalMap : public TableMemory {
   public:
     using TableMemory::TableMemory;
 };
 
-/// The Summed Height Table: (width + 1) x (height + 1) sums modulo 2^n; or the Rank Table: one entry per texel of the
-/// base mesh's lattice. Read by the Summed Height Test or the Rank Test.
+/// The table of the design's height test (height_table_spec). Read by HeightTestUnit.
 class HeightTable : public TableMemory {
   public:
     using TableMemory::TableMemory;

@@ -21,8 +21,8 @@ using datapath::Reads;
 ///
 /// Timed mode: an item starts when the interval is over, a register stage is free and the memory has accepted the
 /// requests of the previous item. It is finished a latency after its start or, if it reads, after its last answer.
-/// Items leave in order. There are ceil((latency + the memory's latency) / interval) register stages, so that neither
-/// latency reduces throughput. Functional mode: reads, processes the item, adds the latency, and passes the result on.
+/// Items leave in order. There are register_stages(), so that neither the unit's nor the memory's latency reduces
+/// throughput. Functional mode: reads, processes the item, adds the latency, and passes the result on.
 template <class In, class Out>
 class Stage : public Unit {
   public:

@@ -12,8 +12,8 @@ namespace tessera {
 constexpr std::uint64_t never = std::numeric_limits<std::uint64_t>::max();
 
 /// The items in a unit's pipeline, in order: started one per interval, finished a latency later, kept until delivered.
-/// Elastic: while the first item cannot leave, others close up behind it, up to the number of register stages,
-/// ceil(latency / interval). (Decision: a rigid pipeline would need a stall signal to every register.)
+/// Elastic: while the first item cannot leave, others close up behind it, up to the number of register stages
+/// (register_stages). (Decision: a rigid pipeline would need a stall signal to every register.)
 template <class Item>
 class ElasticPipeline {
   public:
