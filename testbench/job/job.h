@@ -11,7 +11,7 @@
 
 namespace tessera {
 
-enum class MeshSource { plane, cylinder, sphere, file, patches, run, lattice };
+enum class MeshSource { plane, cylinder, sphere, file, run, lattice };
 enum class MapSource { half_donut, text, noise, constant, ramp, file };
 /// Contents of the displacement map: the map's heights, or heights fitted to the job's own mesh.
 enum class MapHeights { given, fitted };
@@ -25,7 +25,7 @@ enum class DesignPreset { paper, modern };
 
 /// Whether mesh.file names a mesh of this source.
 constexpr bool reads_file(MeshSource source) {
-    return source == MeshSource::file || source == MeshSource::patches || source == MeshSource::run;
+    return source == MeshSource::file || source == MeshSource::run;
 }
 
 /// The map values that displacement.scale spans.
@@ -42,7 +42,7 @@ struct MapRange {
 struct Job {
     struct Mesh {
         MeshSource source = MeshSource::plane;
-        std::string file;           // OBJ, Bezier patches or a run's folder, depending on the source
+        std::string file;           // OBJ file or a run's folder, depending on the source
         std::string fingerprint;    // of the file, see testbench/machine/fingerprint.h; empty: any
         std::int64_t columns = 0;   // quads along u; 0: the source's own (job_keys.cpp)
         std::int64_t rows = 0;      // quads along v; 0: likewise

@@ -16,7 +16,6 @@ constexpr std::string_view name_of(MeshSource value) {
         case MeshSource::cylinder: return "cylinder";
         case MeshSource::sphere: return "sphere";
         case MeshSource::file: return "file";
-        case MeshSource::patches: return "patches";
         case MeshSource::run: return "run";
         case MeshSource::lattice: return "lattice";
     }

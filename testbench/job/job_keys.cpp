@@ -212,10 +212,10 @@ std::vector<KeyTable> declare_keys() {
     });
     list.table("mesh", &Job::mesh, "The base mesh.", [](const auto& key) {
         using Mesh = Job::Mesh;
-        key.add("source", &Mesh::source, "A built-in shape; file, patches, run: the mesh in mesh.file (file is the default if mesh.file is given); lattice: a plane whose vertices lie at centres of texels, mesh.spacing apart, from the first texel's. On a clamped axis of n texels it ends at the last one's centre if mesh.spacing divides n - 1, on a repeated axis a period later if it divides n, else beyond that");
-        key.add("file", &Mesh::file, KeyKind::file, "With mesh.source = \"file\" an OBJ file; with \"patches\" a file of bicubic Bezier patches in the format of Newell's teapot; with \"run\" the folder of an earlier run");
+        key.add("source", &Mesh::source, "A built-in shape; file, run: the mesh in mesh.file (file is the default if mesh.file is given); lattice: a plane whose vertices lie at centres of texels, mesh.spacing apart, from the first texel's. On a clamped axis of n texels it ends at the last one's centre if mesh.spacing divides n - 1, on a repeated axis a period later if it divides n, else beyond that");
+        key.add("file", &Mesh::file, KeyKind::file, "With mesh.source = \"file\" an OBJ file; with \"run\" the folder of an earlier run");
         key.add("fingerprint", &Mesh::fingerprint, KeyKind::text, "64-bit FNV-1a hash of the file (of a run's mesh.ply), 16 hexadecimal digits; a file with another hash is refused. A run writes it into its job.toml; empty: any file");
-        key.add("columns", &Mesh::columns, "quads", between(0, 2048), "Quads along u of a plane, cylinder or sphere, or of each patch; 0: 3 for the plane, 4 for each patch, 32 for cylinder and sphere, which need 3 or more");
+        key.add("columns", &Mesh::columns, "quads", between(0, 2048), "Quads along u of a plane, cylinder or sphere; 0: 3 for the plane, 32 for cylinder and sphere, which need 3 or more");
         key.add("rows", &Mesh::rows, "quads", between(0, 2048), "Quads along v, likewise; a sphere needs 2 or more");
         key.add("spacing", &Mesh::spacing, "texels", between(1, 2048), "Distance between the vertices of a lattice: a power of two");
         key.add("width", &Mesh::width, "model units", length_range, "Size of the plane along x; with a lattice, of the map");

@@ -71,8 +71,7 @@ const char* density_of(const TuneRequest& request) {
     switch (request.job.mesh.source) {
         case MeshSource::plane:
         case MeshSource::cylinder:
-        case MeshSource::sphere:
-        case MeshSource::patches: return " (mesh.columns, mesh.rows)";
+        case MeshSource::sphere: return " (mesh.columns, mesh.rows)";
         case MeshSource::lattice: return " (mesh.spacing)";
         case MeshSource::file:
         case MeshSource::run: break;

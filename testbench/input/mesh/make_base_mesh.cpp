@@ -5,7 +5,6 @@
 #include <cstdint>
 
 #include "testbench/common/error.h"
-#include "testbench/input/mesh/bezier_patches.h"
 #include "testbench/input/mesh/built_in.h"
 #include "testbench/input/mesh/obj_reader.h"
 #include "testbench/input/mesh/run_mesh.h"
@@ -16,11 +15,11 @@ namespace tessera {
 namespace {
 
 /// Defaults for 0 in a job: the paper's plane of 18 triangles; round surfaces of 32 quads per side, a power of two so
-/// that their texture coordinates are exact on any map; patches of 32 triangles, as in the paper's teapot.
+/// that their texture coordinates are exact on any map.
 std::int64_t quads(std::int64_t wanted, MeshSource source) {
     if (wanted != 0)
         return wanted;
-    return source == MeshSource::plane ? 3 : source == MeshSource::patches ? 4 : 32;
+    return source == MeshSource::plane ? 3 : 32;
 }
 
 }  // namespace
@@ -35,9 +34,7 @@ BaseMesh make_base_mesh(const Job::Mesh& job, const std::string& file) {
     if (reads_file(job.source) && file.empty())
         throw InputError(fmt::format("mesh.file is empty: with mesh.source = \"{}\" it must name {}",
                                      name_of(job.source),
-                                     job.source == MeshSource::file      ? "an OBJ file"
-                                     : job.source == MeshSource::patches ? "a file of Bezier patches"
-                                                                         : "a run's folder"));
+                                     job.source == MeshSource::file ? "an OBJ file" : "a run's folder"));
     const std::int64_t columns = quads(job.columns, job.source);
     const std::int64_t rows = quads(job.rows, job.source);
     switch (job.source) {
@@ -46,10 +43,9 @@ BaseMesh make_base_mesh(const Job::Mesh& job, const std::string& file) {
         case MeshSource::sphere: return make_sphere(columns, rows, job.radius);
         case MeshSource::lattice: throw InputError("mesh.source = \"lattice\" depends on the map (load_mesh)");
         case MeshSource::file: return read_obj(file);
-        case MeshSource::patches: return make_patch_mesh(read_bezier_patches(file), columns, rows, file);
         case MeshSource::run: return read_run_mesh(file);
     }
-    throw InputError("mesh.source is not one of plane, cylinder, sphere, file, patches, run");
+    throw InputError("mesh.source is not one of plane, cylinder, sphere, file, run");
 }
 
 }  // namespace tessera

@@ -7,9 +7,8 @@ namespace tessera {
 // Limits of a base mesh. Beyond the first five: ResourceError; beyond grid, size and coordinate: InputError.
 
 constexpr std::size_t largest_base_triangles = 4'000'000;
-constexpr std::size_t largest_face_corners = 65'536;  ///< corners of one polygon in a file
-constexpr std::size_t largest_obj_records =
-    16'000'000;  ///< `v` lines in a file; the same for `vt` and `vn`, and points of patches
+constexpr std::size_t largest_face_corners = 65'536;             ///< corners of one polygon in a file
+constexpr std::size_t largest_obj_records = 16'000'000;          ///< `v` lines in a file; the same for `vt` and `vn`
 constexpr std::size_t largest_mesh_file = std::size_t{1} << 30;  ///< bytes
 /// Point-in-triangle tests for all polygons of a file that are not convex: a few seconds.
 constexpr std::uint64_t largest_cutting_work = 1'000'000'000;

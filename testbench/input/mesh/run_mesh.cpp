@@ -72,7 +72,7 @@ void complete_normals(BaseMesh& mesh) {
     complete_smooth_normals(mesh);
 }
 
-/// Built-in meshes and patches have up = z, whatever the run's camera; for files and runs, the camera's up is used.
+/// Built-in meshes have up = z, whatever the run's camera; for files and runs, the camera's up is used.
 glm::dvec3 up_of(const Job& job) {
     if (job.mesh.source != MeshSource::file && job.mesh.source != MeshSource::run)
         return {0, 0, 1};

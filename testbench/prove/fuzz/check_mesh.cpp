@@ -1,8 +1,8 @@
 #include <cmath>
 
 #include "testbench/common/error.h"
-#include "testbench/input/mesh/bezier_patches.h"
 #include "testbench/input/mesh/mesh_limits.h"
+#include "testbench/input/mesh/obj_reader.h"
 #include "testbench/prove/fuzz/fuzz_target.h"
 #include "testbench/setup/mesh/base_mesh.h"
 #include "testbench/setup/mesh/triangle_geometry.h"
@@ -53,11 +53,10 @@ void promise_complete(const BaseMesh& mesh) {
 
 }  // namespace
 
-void check_patches(std::string_view bytes) {
-    constexpr std::int64_t columns = 3, rows = 2;
+void check_obj(std::string_view bytes) {
     const std::string name = "fuzzed";
     try {
-        promise_complete(make_patch_mesh(parse_bezier_patches(bytes, name), columns, rows, name));
+        promise_complete(parse_obj(bytes, name));
     } catch (const InputError& error) {
         promise_message(error.what(), name);
     } catch (const ResourceError& error) {

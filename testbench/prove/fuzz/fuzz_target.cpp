@@ -26,8 +26,7 @@ void promise_message(std::string_view message, std::string_view file) {
 
 const std::vector<FuzzTarget>& fuzz_targets() {
     static const std::vector<FuzzTarget> targets{
-        {"patches", check_patches}, {"ply", check_ply},         {"map", check_map},
-        {"toml", check_toml},       {"surface", check_surface},
+        {"obj", check_obj}, {"ply", check_ply}, {"map", check_map}, {"toml", check_toml}, {"surface", check_surface},
     };
     return targets;
 }

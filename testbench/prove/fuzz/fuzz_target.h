@@ -26,7 +26,7 @@ struct FuzzTarget {
     void (*check)(std::string_view bytes);
 };
 
-void check_patches(std::string_view bytes);
+void check_obj(std::string_view bytes);
 void check_ply(std::string_view bytes);
 /// A map of any format. The corpus has PGM only, since libraries read EXR and PNG.
 void check_map(std::string_view bytes);

@@ -121,14 +121,6 @@ TEST_CASE("limits: a hundred million triangles are refused before any is made") 
     for (const char* const source : {"plane", "cylinder", "sphere"})
         refused({std::string("mesh.source=") + source, "mesh.columns=2048", "mesh.rows=2048"}, ExitCode::resource_limit,
                 {"mesh.columns = 2048", "mesh.rows", "the limit is 4000000"});
-    const TestFolder here;
-    write_all(here.path() / "p.txt", "1\n1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1\n1\n0,0,0\n");
-    check_refused(
-        run_with({"mesh.source=patches", "mesh.file=p.txt", "mesh.columns=2048", "mesh.rows=2048"}, here.path()),
-        ExitCode::resource_limit, {"p.txt", "mesh.columns", "4000000"});
-    write_all(here.path() / "p.txt", "99999999999\n");
-    check_refused(run_with({"mesh.source=patches", "mesh.file=p.txt"}, here.path()), ExitCode::resource_limit,
-                  {"p.txt:1", "99999999999", "the limit is 4000000"});
 }
 
 TEST_CASE("limits: maps, texts and frames that are far too large are refused") {
@@ -210,7 +202,6 @@ TEST_CASE("limits: a path that is not a regular file is refused by every command
     const std::vector<std::vector<std::string>> commands{
         {"run", "FILE"},
         {"run", "--set", "mesh.source=file", "--set", "mesh.file=FILE"},
-        {"run", "--set", "mesh.source=patches", "--set", "mesh.file=FILE"},
         {"run", "--set", "mesh.source=run", "--set", "mesh.file=FILE"},
         {"run", "--set", "map.source=file", "--set", "map.file=FILE"},
         {"bake", "FILE", "--output", "a.pgm"},

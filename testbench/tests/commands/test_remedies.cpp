@@ -74,21 +74,6 @@ mirrored() {
     printf 'vt %s\n' '.25 .4' '.75 .4' '.5 .9' '.5 0' '1 .9' '0 .9'
     printf '%s\n' 'f 1/1 2/2 3/3' 'f 2/2 1/1 4/3' 'f 3/3 2/2 5/1' 'f 1/1 3/3 6/2'
 }
-# patches TURNED: a file of two Bezier patches, flat squares; 1: at a right angle, 0: in one plane
-patches() {
-    awk -v U=$1 'BEGIN {
-        print "2\n1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16\n4,17,18,19,8,20,21,22,12,23,24,25,16,26,27,28\n28"
-        for (k = 0; k < 16; ++k) printf "%g,%g,0\n", k % 4, int(k / 4)
-        for (k = 0; k < 12; ++k) { x = k % 3 + 1; printf "%g,%g,%g\n", 3 + x * (1 - U), int(k / 3), x * U }
-    }'
-}
-# patch [SIZE]: a file of one Bezier patch, a flat square
-patch() {
-    awk -v S=${1:-1} 'BEGIN {
-        print "1\n1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16\n16"
-        for (k = 0; k < 16; ++k) printf "%g,%g,0\n", S * (k % 4), S * int(k / 4)
-    }'
-}
 # quadric: a surface file
 quadric() { printf '%s\n' '[quadric]' 'shape = "sphere"' 'radius = 2' 'centre = [0, 0, -1]'; }
 # nurbs: another

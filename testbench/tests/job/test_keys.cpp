@@ -284,13 +284,13 @@ TEST_CASE("a file named without a source is an OBJ file, or an image") {
     apply_setting(set, "map.file=b.png");
     CHECK(set.mesh.source == MeshSource::file);
     CHECK(set.map.source == MapSource::file);
-    CHECK(parse_job("[mesh]\nfile = \"a.txt\"\nsource = \"patches\"", "a").mesh.source == MeshSource::patches);
+    CHECK(parse_job("[mesh]\nfile = \"a\"\nsource = \"run\"", "a").mesh.source == MeshSource::run);
     CHECK(parse_job("[mesh]\nfile = \"a.txt\"\nsource = \"sphere\"", "a").mesh.source == MeshSource::sphere);
     CHECK(parse_job("[mesh]\nfile = \"\"", "a").mesh.source == MeshSource::plane);
-    Job patches;
-    apply_setting(patches, "mesh.source=patches");
-    apply_setting(patches, "mesh.file=a.txt");
-    CHECK(patches.mesh.source == MeshSource::patches);
+    Job run;
+    apply_setting(run, "mesh.source=run");
+    apply_setting(run, "mesh.file=a");
+    CHECK(run.mesh.source == MeshSource::run);
 }
 
 TEST_CASE("every choice reads and keeps its name") {

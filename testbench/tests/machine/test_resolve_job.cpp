@@ -107,7 +107,6 @@ TEST_CASE("up is z, but y for an OBJ file, and for a flat one its axis on the si
     };
     using Up = std::array<double, 3>;
     CHECK(up_of(make_sphere(8, 4, 1), MeshSource::sphere) == Up{0, 0, 1});
-    CHECK(up_of(box(1, 1, 1), MeshSource::patches) == Up{0, 0, 1});
     CHECK(up_of(box(1, 1, 1), MeshSource::file) == Up{0, 1, 0});
     CHECK(up_of(make_plane(3, 3, 2, 2), MeshSource::file) == Up{0, 0, 1});
     CHECK(up_of(parse_obj("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 3 2\n", "a"), MeshSource::file) == Up{0, 0, -1});

@@ -151,7 +151,6 @@ TEST_CASE("up is the run's camera.up if its mesh was a file or a run, else z") {
     CHECK(up_of(MeshSource::file) == glm::dvec3(0, 2, 1));
     CHECK(up_of(MeshSource::run) == glm::dvec3(0, 2, 1));
     CHECK(up_of(MeshSource::cylinder) == glm::dvec3(0, 0, 1));
-    CHECK(up_of(MeshSource::patches) == glm::dvec3(0, 0, 1));
 }
 
 TEST_CASE("frame k of n differs in its scale and folder only") {

@@ -85,8 +85,7 @@ const std::array bases{
          "errors of up to"},
     Base{"a cube with the whole map on each face", "map.width=16 map.height=16", false, "share a texel", cube},
     Base{"the teapot",
-         "mesh.source=patches mesh.file=teapot_newell.txt mesh.columns=1 mesh.rows=1 map.width=8 map.height=8 "
-         "map.address_u=repeat map.address_v=repeat",
+         "mesh.source=file mesh.file=teapot.obj map.width=8 map.height=8 map.address_u=repeat map.address_v=repeat",
          false, "errors of up to"},
     Base{"a lattice whose spacing divides the periods",
          "mesh.source=lattice mesh.spacing=8 map.width=24 map.height=16 map.address_u=repeat map.address_v=repeat",

@@ -127,8 +127,8 @@ TEST_CASE("the head on its cylinder with a Highlight Test") {
 
 TEST_CASE("half donut on the teapot") {
     Job job;
-    job.mesh.source = MeshSource::patches;
-    job.mesh.file = "teapot_newell.txt";
+    job.mesh.source = MeshSource::file;
+    job.mesh.file = "teapot.obj";
     job.displacement.scale = 0.1;
     job.camera.eye = {0, -9, 5};
     expect_conformance(job, half_donut_map(256, 256));

@@ -153,5 +153,5 @@ TEST_CASE("the mesh source of the job is dispatched") {
     CHECK_THROWS_WITH(make_base_mesh(job, "nowhere/at_all.obj"), Contains("nowhere/at_all.obj: no such file"));
     CHECK_THROWS_WITH(make_base_mesh(job, "."), Contains("not a regular file"));
     job.source = static_cast<MeshSource>(99);
-    CHECK_THROWS_WITH(make_base_mesh(job, ""), "mesh.source is not one of plane, cylinder, sphere, file, patches, run");
+    CHECK_THROWS_WITH(make_base_mesh(job, ""), "mesh.source is not one of plane, cylinder, sphere, file, run");
 }

@@ -78,6 +78,31 @@ TEST_CASE("the shared meshes equal those read by tinyobjloader") {
     }
 }
 
+TEST_CASE("the teapot is closed except for its own openings, and equals that of the shared data") {
+    const BaseMesh mesh = read_obj((source_folder() / "testbench/examples/jobs/teapot.obj").string());
+    require_complete(mesh);
+    CHECK(mesh.triangles.size() == 992);
+    const EdgeCounts edges = count_edges(mesh);
+    CHECK(edges.odd == 0);
+    // The rims of the body and the lid have 16 edges each, the two ends of spout and handle 8 each.
+    CHECK(edges.border == 64);
+    const fs::path file = shared_data("meshes/teapot_n4.obj");
+    if (file.empty())
+        return;
+    const BaseMesh expected = read_obj(file.string());
+    REQUIRE(mesh.triangles.size() == expected.triangles.size());
+    std::size_t different = 0;
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            const BaseVertex &a = mesh.vertices[mesh.triangles[i][k]], &b = expected.vertices[expected.triangles[i][k]];
+            // The file has six decimals.
+            different += !(safe_length(a.position - b.position) < 1e-6) || !(safe_length(a.normal - b.normal) < 2e-6) ||
+                         a.texture != b.texture;
+        }
+    }
+    CHECK(different == 0);
+}
+
 TEST_CASE("the built-in plane is the shared plane of 18 triangles") {
     const fs::path file = shared_data("meshes/plane_18.obj");
     if (file.empty())

@@ -48,8 +48,8 @@ void run_corpus(std::string_view name) {
 
 }  // namespace
 
-TEST_CASE("fuzz corpus: Bezier patches") {
-    run_corpus("patches");
+TEST_CASE("fuzz corpus: OBJ") {
+    run_corpus("obj");
 }
 TEST_CASE("fuzz corpus: PLY of a run") {
     run_corpus("ply");
