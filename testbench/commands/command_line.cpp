@@ -101,7 +101,7 @@ std::function<ExitCode()> read_command_line(int argc, const char* const* argv) {
     compare->add_option("RUN", run_folder, "run folder, written by `tessera run`")->required();
     compare->add_option("--data", data, "folder of `data:` paths in its job; default: $TESSERA_DATA");
 
-    CLI::App* const render = app.add_subcommand("render", "render a finished run's mesh to PNG or EXR");
+    CLI::App* const render = app.add_subcommand("render", "render a finished run's mesh to PNG");
     RenderOptions render_options;
     render_options.add_to(*render);
     render->add_option("--data", data, "folder of `data:` paths in the run's job; default: $TESSERA_DATA");

@@ -27,32 +27,25 @@ namespace fs = std::filesystem;
 struct Output {
     fs::path folder;
     std::string file;  ///< file name of a single picture; empty: named after the view
-    std::optional<ExrSamples> exr;
 
     fs::path path_of(PictureView view) const {
-        return folder / (file.empty() ? std::string(name_of(view)) + (exr ? ".exr" : ".png") : file);
+        return folder / (file.empty() ? std::string(name_of(view)) + ".png" : file);
     }
 };
 
 Output choose_output(const RenderRequest& request) {
-    Output output{request.output.empty() ? request.run : request.output, {}, request.exr};
+    Output output{request.output.empty() ? request.run : request.output, {}};
     std::error_code error;
     if (request.output.empty() || fs::is_directory(request.output, error) || !request.output.has_filename() ||
         request.output.extension().empty())
         return output;
-    const std::string ending = lower_case_extension(request.output);
-    if (ending != ".png" && ending != ".exr")
+    if (lower_case_extension(request.output) != ".png")
         throw InputError(
-            fmt::format("--output {}: pictures are written as FILE.png or FILE.exr; to name a new folder, end "
-                        "it with a /",
+            fmt::format("--output {}: pictures are written as FILE.png; to name a new folder, end it with a /",
                         request.output.string()));
     if (request.views.size() > 1)
         throw InputError(fmt::format("--output {}: {} views need {} files; name a folder", request.output.string(),
                                      request.views.size(), request.views.size()));
-    if (ending == ".png" && request.exr)
-        throw InputError(fmt::format("--output {}: conflicts with --exr; name it FILE.exr", request.output.string()));
-    if (ending == ".exr" && !output.exr)
-        output.exr = ExrSamples::half;
     output.folder = folder_of(request.output);
     output.file = request.output.filename().string();
     return output;
@@ -108,16 +101,11 @@ void add_errors(const RecordedRun& run, RenderMesh& mesh, ErrorScale& scale) {
         scale.largest = scale.beyond;
 }
 
-void write(const fs::path& path, const Picture& picture, const std::optional<ExrSamples>& exr) {
-    write_file(path, exr ? encode_exr(picture.linear, *exr) : encode_png(picture.image));
-}
-
 }  // namespace
 
 ExitCode render_command(const RenderRequest& asked, const fs::path& data_folder) {
     RenderRequest request = asked;
     const Output output = choose_output(request);
-    request.picture.linear = output.exr.has_value();
     const RecordedRun run = read_run(request.run, data_folder);
     const View camera = choose_camera(request, run.job);
     check_output_folder(output.folder, "--output");
@@ -135,7 +123,7 @@ ExitCode render_command(const RenderRequest& asked, const fs::path& data_folder)
     AtomicSet files;
     files.make_folder(output.folder, "--output");
     for (std::size_t i = 0; i < pictures.size(); ++i)
-        write(output.path_of(request.views[i]), pictures[i], output.exr);
+        write_file(output.path_of(request.views[i]), encode_png(pictures[i].image));
     files.commit();
     progress.clear();
 
@@ -153,8 +141,7 @@ ExitCode render_command(const RenderRequest& asked, const fs::path& data_folder)
 std::vector<std::string> picture_names() {
     std::vector<std::string> names;
     for (const PictureView view : picture_views)
-        for (const char* const ending : {".png", ".exr"})
-            names.push_back(std::string(name_of(view)) + ending);
+        names.push_back(std::string(name_of(view)) + ".png");
     return names;
 }
 

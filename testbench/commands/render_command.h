@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "testbench/common/error.h"
-#include "testbench/output/picture/exr_writer.h"
 #include "testbench/output/picture/picture_options.h"
 #include "testbench/output/picture/picture_view.h"
 
@@ -19,11 +18,10 @@ struct RenderRequest {
     PictureOptions picture;
     std::optional<std::array<double, 3>> eye, target, up;  ///< override the run's camera; model units
     std::optional<double> field_of_view;                   ///< vertical, degrees
-    std::filesystem::path output;                          ///< FILE.png, FILE.exr or a folder; empty: the run's own
-    std::optional<ExrSamples> exr;                         ///< EXR files instead of PNG
+    std::filesystem::path output;                          ///< FILE.png or a folder; empty: the run's own
 };
 
-/// Reads a run's folder and writes one picture per view: VIEW.png or VIEW.exr in a folder, or the one file requested.
+/// Reads a run's folder and writes one picture per view: VIEW.png in a folder, or the one file requested.
 /// Prints their names and sizes. The overview from the run's own camera is the run's picture.png, byte for byte.
 ///
 /// Throws InputError: no run in the folder, an invalid camera, an output that cannot be written, several views for one

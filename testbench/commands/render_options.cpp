@@ -67,9 +67,7 @@ void RenderOptions::add_to(CLI::App& render) {
         ->take_all()
         ->delimiter(',')
         ->allow_extra_args(false);
-    output_given_ = render.add_option("--output", output_,
-                                      "FILE.png, FILE.exr (linear light), or a folder for VIEW.png; default: RUN");
-    exr_given_ = render.add_option("--exr", exr_, "write EXR instead of PNG, with samples `half` or `float`");
+    output_given_ = render.add_option("--output", output_, "FILE.png, or a folder for VIEW.png; default: RUN");
     const std::string picture = "Picture";
     size_given_ = render.add_option("--size", size_, "WIDTHxHEIGHT in pixels, or WIDTH; default: 1600")->group(picture);
     render.add_option("--zoom", zoom_, "U V FACTOR: close-up around U, V (0..1 from the left and the top)")
@@ -110,11 +108,6 @@ RenderRequest RenderOptions::request() const {
     if (output_given_->count() > 0 && output_.empty())
         throw InputError("--output is empty: name a file or a folder, or leave it out");
     request.output = output_;
-    if (exr_given_->count() > 0) {
-        if (exr_ != "half" && exr_ != "float")
-            throw InputError(fmt::format("--exr {}: samples are `half` or `float`", exr_));
-        request.exr = exr_ == "half" ? ExrSamples::half : ExrSamples::single;
-    }
     PictureOptions& picture = request.picture;
     if (size_given_->count() > 0)
         apply_size(size_, picture);

@@ -21,7 +21,7 @@ class RenderOptions {
     RenderRequest request() const;
 
   private:
-    std::string run_, output_, size_, exr_;
+    std::string run_, output_, size_;
     std::vector<std::string> views_;
     std::vector<double> eye_, target_, up_, zoom_;
     double field_of_view_ = 0, line_width_ = 0, error_scale_ = 0;
@@ -31,7 +31,6 @@ class RenderOptions {
     CLI::Option* error_scale_given_ = nullptr;
     CLI::Option* output_given_ = nullptr;
     CLI::Option* size_given_ = nullptr;
-    CLI::Option* exr_given_ = nullptr;
 };
 
 }  // namespace tessera

@@ -1,5 +1,11 @@
 #include "testbench/input/map/encode_height_map.h"
 
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfOutputFile.h>
+#include <ImfStdIO.h>
+#include <ImfThreading.h>
 #include <fmt/format.h>
 #include <png.h>
 
@@ -7,7 +13,6 @@
 #include <cmath>
 #include <cstdint>
 
-#include "testbench/input/map/exr_encoder.h"
 #include "testbench/input/map/png_encoder.h"
 
 namespace tessera {
@@ -35,14 +40,30 @@ std::string pgm_file(int width, int height, const std::vector<std::uint16_t>& sa
     return file;
 }
 
+/// One channel Y, without a time stamp: the same map gives the same bytes.
+std::string exr_file(int width, int height, const std::vector<float>& samples) {
+    Imf::Header header(width, height, 1, Imath::V2f(0, 0), 1, Imf::INCREASING_Y, Imf::ZIP_COMPRESSION);
+    header.channels().insert("Y", Imf::Channel(Imf::FLOAT));
+    Imf::FrameBuffer frame;
+    // OpenEXR only reads through this pointer.
+    frame.insert("Y", Imf::Slice::Make(Imf::FLOAT, const_cast<float*>(samples.data()), header.dataWindow()));
+    Imf::setGlobalThreadCount(0);
+    Imf::StdOSStream stream;
+    {
+        Imf::OutputFile file(stream, header, 0);
+        file.setFrameBuffer(frame);
+        file.writePixels(height);
+    }  // the destructor completes the file
+    return stream.str();
+}
+
 }  // namespace
 
 EncodedMap encode_height_map(int width, int height, const std::vector<double>& heights, MapFormat format) {
     EncodedMap map;
     if (format == MapFormat::exr) {
-        const auto samples = top_down<float>(width, heights, [](double value) { return static_cast<float>(value); });
-        const Imf::Header header(width, height, 1, Imath::V2f(0, 0), 1, Imf::INCREASING_Y, Imf::ZIP_COMPRESSION);
-        map.bytes = encode_exr_samples(header, {"Y"}, Imf::FLOAT, samples.data());
+        map.bytes = exr_file(width, height,
+                             top_down<float>(width, heights, [](double value) { return static_cast<float>(value); }));
         return map;
     }
     const auto [low, high] = std::minmax_element(heights.begin(), heights.end());

@@ -24,7 +24,6 @@ struct PictureOptions {
     Zoom zoom;
     double line_width = 0;  ///< pixels; 0: chosen by the picture's size
     ErrorScale errors;      ///< for PictureView::error
-    bool linear = false;    ///< produce linear light, too
 };
 
 /// Width in pixels of the surface for which line widths and the legend are specified.

@@ -98,11 +98,11 @@ class Paint {
 
 class Renderer {
   public:
-    Renderer(const RenderMesh& mesh, const View& view, const std::vector<Style>& styles, bool linear)
+    Renderer(const RenderMesh& mesh, const View& view, const std::vector<Style>& styles)
         : mesh_(mesh), view_(view), scene_(mesh), illumination_(view, styles.front(), scene_) {
         for (const Style& style : styles) {
             paints_.emplace_back(style, mesh);
-            pictures_.push_back(to_picture(Image(view.width, view.height, style.background), linear));
+            pictures_.push_back({Image(view.width, view.height, style.background)});
             if (style.wireframe)
                 line_width_ = style.line_width;
         }
@@ -169,17 +169,10 @@ class Renderer {
         for (std::size_t s = 0; s < paints_.size(); ++s) {
             const glm::dvec3* sum = &tile.sums[s * pixels];
             for_each_pixel(left, top, right, bottom, [&](int x, int y) {
-                set_pixel(pictures_[s], x, y, *sum++ / static_cast<double>(samples_per_pixel));
+                pictures_[s].image.set(x, y, to_srgb(*sum++ / static_cast<double>(samples_per_pixel)));
             });
         }
         return true;
-    }
-
-    /// The image's colours are computed from the linear light as written, in single precision.
-    static void set_pixel(Picture& picture, int x, int y, const glm::vec3& light) {
-        picture.image.set(x, y, to_srgb(light));
-        if (!picture.linear.values.empty())
-            std::copy_n(&light[0], 3, &picture.linear.values[picture.linear.offset(x, y)]);
     }
 
     /// Adds one sample of every pixel in the tile to the sums; returns false if none hit the mesh.
@@ -284,11 +277,10 @@ class Renderer {
 
 }  // namespace
 
-std::vector<Picture> render_pictures(const RenderMesh& mesh, const View& view, const std::vector<Style>& styles,
-                                     bool linear) {
+std::vector<Picture> render_pictures(const RenderMesh& mesh, const View& view, const std::vector<Style>& styles) {
     if (styles.empty())
         return {};
-    return Renderer(mesh, view, styles, linear).run();
+    return Renderer(mesh, view, styles).run();
 }
 
 }  // namespace tessera

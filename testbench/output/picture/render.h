@@ -10,11 +10,9 @@ namespace tessera {
 
 /// Renders pictures of the mesh: interpolated displaced normals, soft shadows and sky light by ray tracing, 8 samples
 /// per pixel. Several styles cost little more than one; all use the first one's lights and the last one's line width.
-/// linear: produce linear light too. The same input gives the same bytes, whatever the machine's load. If nothing is in
-/// sight: the background. Memory besides the mesh: about 100 bytes per triangle, 3 bytes per pixel of each style, 12
-/// more with linear light. Throws ResourceError when memory runs out.
-/// ResourceError when it runs out.
-std::vector<Picture> render_pictures(const RenderMesh& mesh, const View& view, const std::vector<Style>& styles,
-                                     bool linear);
+/// The same input gives the same bytes, whatever the machine's load. If nothing is in sight: the background. Memory
+/// besides the mesh: about 100 bytes per triangle, 3 bytes per pixel of each style. Throws ResourceError when it runs
+/// out.
+std::vector<Picture> render_pictures(const RenderMesh& mesh, const View& view, const std::vector<Style>& styles);
 
 }  // namespace tessera

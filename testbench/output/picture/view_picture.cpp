@@ -59,13 +59,21 @@ View panel_view(const View& camera, const RenderMesh& mesh, const PictureOptions
     return zoomed(all, options.zoom.across, options.zoom.down, options.zoom.factor);
 }
 
+/// Copies `from` into `to` with its upper left corner at (left, top), clipped to `to`.
+void paste(const Image& from, int left, int top, Image& to) {
+    const int columns = std::min(from.width, to.width - left), rows = std::min(from.height, to.height - top);
+    for (int y = 0; columns > 0 && y < rows; ++y)
+        std::copy_n(&from.bytes[from.offset(0, y)], 3 * static_cast<std::size_t>(columns),
+                    &to.bytes[to.offset(left, top + y)]);
+}
+
 /// The picture without its surfaces.
 Picture start_picture(const Layout& layout, const PictureOptions& options) {
     const Colour background = layout.panels.front().background;
-    Picture picture = to_picture(Image(options.width, layout.height(), background), options.linear);
+    Picture picture{Image(options.width, layout.height(), background)};
     if (layout.legend_height > 0)
-        paste(to_picture(draw_legend(layout.legend, options.width, layout.legend_height, background), options.linear),
-              0, layout.panel_height, picture);
+        paste(draw_legend(layout.legend, options.width, layout.legend_height, background), 0, layout.panel_height,
+              picture.image);
     return picture;
 }
 
@@ -103,12 +111,13 @@ std::vector<Picture> render_views(const RenderMesh& mesh, const View& camera, co
     std::vector<Picture> result(views.size());
     for (const auto& [size, group] : groups) {
         const View view = panel_view(camera, mesh, options, size.first, size.second);
-        std::vector<Picture> surfaces = render_pictures(mesh, view, group.styles, options.linear);
+        std::vector<Picture> surfaces = render_pictures(mesh, view, group.styles);
         for (std::size_t i = 0; i < surfaces.size(); ++i) {
             Picture& picture = result[group.panels[i].picture];
             if (picture.image.bytes.empty())
                 picture = start_picture(layouts[group.panels[i].picture], options);
-            paste(surfaces[i], group.panels[i].left, 0, picture);
+            paste(surfaces[i].image, group.panels[i].left, 0, picture.image);
+            picture.mesh_in_sight = picture.mesh_in_sight || surfaces[i].mesh_in_sight;
             surfaces[i] = {};  // releases its memory
         }
     }

@@ -121,22 +121,6 @@ TEST_CASE("render: camera, zoom, lines and error scale change the picture") {
                    "--up", "0", "0", "1", "--field-of-view", "36"}) == usual);
 }
 
-TEST_CASE("render: EXR files are chosen by file name or by option") {
-    const TestFolder here;
-    make_run(here.path());
-    const std::string magic("\x76\x2f\x31\x01", 4);
-    rendered({"run", "--size", "120x100", "--view", "shaded", "--output", "a.exr"}, here.path());
-    rendered({"run", "--size", "120x100", "--view", "shaded", "--output", "b.exr", "--exr", "half"}, here.path());
-    rendered({"run", "--size", "120x100", "--view", "shaded", "--exr", "float"}, here.path());
-    const std::string half = read_all(here.path() / "a.exr");
-    const std::string single = read_all(here.path() / "run/shaded.exr");
-    CHECK(half.compare(0, 4, magic) == 0);
-    CHECK(half == read_all(here.path() / "b.exr"));
-    CHECK(single.compare(0, 4, magic) == 0);
-    CHECK(single.size() > half.size());
-    CHECK_FALSE(fs::exists(here.path() / "run/shaded.png"));
-}
-
 TEST_CASE("render: a camera that sees nothing and a run that emitted nothing give an empty picture with a note") {
     const TestFolder here;
     make_run(here.path());
@@ -181,7 +165,6 @@ TEST_CASE("render: hostile arguments are refused in one line") {
     refused({"render", "run", "--view", "test,wireframe", "--error-scale", "0.5"}, here, {"--view error"});
     refused({"render", "run", "--view", "shadow"}, here, {"shadow", "shaded"});
     refused({"render", "run", "--view", ""}, here, {"--view"});
-    refused({"render", "run", "--exr", "double"}, here, {"--exr", "half"});
 }
 
 TEST_CASE("render: folders that are not runs and invalid outputs are refused") {
@@ -195,11 +178,10 @@ TEST_CASE("render: folders that are not runs and invalid outputs are refused") {
     write_all(here.path() / "file", "mine");
     refused({"render", "file"}, here, {"file"});
     refused({"render", "run", "--output", ""}, here, {"--output"});
-    refused({"render", "run", "--output", "a.jpg"}, here, {"a.jpg", ".png", ".exr"});
+    refused({"render", "run", "--output", "a.jpg"}, here, {"a.jpg", ".png"});
     refused({"render", "run", "--output", "file/a.png"}, here, {"--output", "file"});
     refused({"render", "run", "--output", "file"}, here, {"--output", "file"});
     refused({"render", "run", "--output", "/proc/tessera/a.png"}, here, {"--output", "/proc"});
-    refused({"render", "run", "--output", "a.png", "--exr", "half"}, here, {"a.png", "--exr"});
     refused({"render", "run", "--view", "shaded,test", "--output", "a.png"}, here, {"a.png", "folder"});
     CHECK(read_all(here.path() / "file") == "mine");
     fs::remove(here.path() / "run/mesh.ply");

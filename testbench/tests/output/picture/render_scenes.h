@@ -65,7 +65,7 @@ inline View look_down(double distance, int width, int height, double focal) {
 
 inline std::vector<Image> render_styles(const RenderMesh& mesh, const View& view, const std::vector<Style>& styles) {
     std::vector<Image> images;
-    for (Picture& picture : render_pictures(mesh, view, styles, false))
+    for (Picture& picture : render_pictures(mesh, view, styles))
         images.push_back(std::move(picture.image));
     return images;
 }
