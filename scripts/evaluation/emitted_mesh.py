@@ -10,6 +10,7 @@ TYPES = {"double": "<f8", "float": "<f4", "uchar": "u1", "ushort": "<u2", "int":
 @dataclass
 class EmittedMesh:
     positions: np.ndarray  # n x 3, model units
+    normals: np.ndarray  # n x 3, of the displaced surface
     texture: np.ndarray  # n x 2, 0..1 over the map, t from its bottom row
     triangles: np.ndarray  # m x 3 vertex indices
     generation: np.ndarray  # m
@@ -46,6 +47,7 @@ def read_mesh(path):
     faces = np.frombuffer(content, face, counts["face"], header_end + vertices.nbytes)
     return EmittedMesh(
         positions=np.stack([vertices[name] for name in "xyz"], axis=1),
+        normals=np.stack([vertices["n" + name] for name in "xyz"], axis=1).astype(float),
         texture=np.stack([vertices[name] for name in "st"], axis=1).astype(float),
         triangles=faces["vertices"],
         generation=faces["generation"].astype(int),

@@ -59,11 +59,6 @@ class Study:
                         [bake, *run_commands(self.program, f"{FOLDER}/{name}.job.toml", self.QUIET, True)],
                         inputs={**inputs, str(surface): self.hash.seen(surface)})
 
-    def highlight_study(self):
-        """The separate program that measures per-vertex light, on the half donut."""
-        program = self.program.parent.parent / "benchmark/tessera_highlight_study"
-        return self.add("study", self.hash.file(program), [[str(program)]], inputs={str(program): self.hash.seen(program)})
-
     def words(self, *arguments):
         return [str(word) for word in (self.program, *arguments) if word is not None]
 

@@ -327,13 +327,12 @@ TEST_CASE("sweep: the study of a search is another one if a file that its jobs o
 TEST_CASE("figures: a result is named by the content of every file that it depends on") {
     const Checkout checkout;
     const fs::path root = checkout.root();
-    for (const char* const folder : {"jobs", "../shared/data", "build/release/testbench/benchmark"})
+    for (const char* const folder : {"jobs", "../shared/data"})
         fs::create_directories(root / folder);
     write_all(root / "jobs/one.toml", "[mesh]\nfile = \"mesh.obj\"\n[map]\nfile = \"data:map.pgm\"\n");
     write_all(root / "jobs/mesh.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n");
     write_all(root / "../shared/data/map.pgm", "P2\n2 2\n255\n0 90 0 0\n");
     write_all(root / "surface.toml", "a surface");
-    write_all(root / "build/release/testbench/benchmark/tessera_highlight_study", "a program");
     write_all(
         root / "keys.py",
         "import sys\nfrom argparse import Namespace\nfrom pathlib import Path\n"
@@ -344,7 +343,6 @@ TEST_CASE("figures: a result is named by the content of every file that it depen
         "one = study.Study('s', Namespace(program=program, picture_width=8), Store('results'), ContentHash(program))\n"
         "run = one.run('run', 'one')\nrun.render('shaded')\n"
         "one.tune('tune', 9, 'one')\none.bake('bake', Path('surface.toml').resolve(), study.JOBS / 'one.toml')\n"
-        "one.highlight_study()\n"
         "for each in [*one.runs]:\n    print(each.task.key)\n    assert each.task.inputs or each.name == 'run'\n");
     const auto keys = [&] {
         const ProgramEnd end = checkout.run("python3 -B keys.py");
@@ -353,12 +351,11 @@ TEST_CASE("figures: a result is named by the content of every file that it depen
         return lines_of(end.out);
     };
     const std::vector<std::string> before = keys();
-    REQUIRE(before.size() == 5);
-    // run, its picture, tune, bake, highlight study
+    REQUIRE(before.size() == 4);
+    // run, its picture, tune, bake
     using Row = std::pair<const char*, std::vector<std::size_t>>;
     for (const auto& [file, others] :
-         {Row{"../shared/data/map.pgm", {0, 1, 2, 3}}, Row{"jobs/mesh.obj", {0, 1, 2, 3}}, Row{"surface.toml", {3}},
-          Row{"build/release/testbench/benchmark/tessera_highlight_study", {4}}}) {
+         {Row{"../shared/data/map.pgm", {0, 1, 2, 3}}, Row{"jobs/mesh.obj", {0, 1, 2, 3}}, Row{"surface.toml", {3}}}) {
         INFO(file);
         const std::string text = read_all(root / file);
         write_all(root / file, text + "#\n");

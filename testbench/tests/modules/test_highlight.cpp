@@ -2,14 +2,12 @@
 #include <cmath>
 #include <string>
 
-#include "testbench/benchmark/gouraud_error.h"
 #include "testbench/tests/support/bare_mesh.h"
 #include "testbench/tests/support/case_table.h"
 #include "testbench/tests/support/checked_run.h"
-#include "testbench/tests/support/edited_mesh.h"
 #include "testbench/tests/support/job_settings.h"
 
-// The whole machine with a Highlight Test: its meshes, its cycles, and its effect.
+// The whole machine with a Highlight Test: its meshes and its cycles.
 
 using namespace tessera;
 using namespace tessera::testing;
@@ -137,52 +135,4 @@ TEST_CASE("Highlight Test: it splits edges in the highlight, and nowhere else") 
         CHECK(static_cast<double>(nearest) > std::ldexp(std::cos((25 + 12) * 3.14159 / 180), 28));
     }
     CHECK(alone > 1000);
-}
-
-// The effect: with as many triangles, lighting per vertex is closer to lighting per texel in the highlight.
-TEST_CASE("Highlight Test: per-vertex highlights have a smaller error than in a finer mesh of as many triangles") {
-    Job job = functional_job();
-    const MachineSetup with = setup_of(with_highlight(job));
-    const MachineSetup without = setup_of(job);
-    const EmittedMesh highlighted = bare_mesh(with);
-    job.tests.normal_threshold = 0.1;
-    const MachineSetup finer = setup_of(job);
-    const EmittedMesh finer_mesh = bare_mesh(finer);
-    CHECK(finer_mesh.triangles.size() >= highlighted.triangles.size());
-
-    const GoldenInputs inputs(with);
-    Highlight highlight;
-    const auto& half = with.registers.tests.half_vector;
-    highlight.half_vector = glm::normalize(Dequantise(with.registers.formats).direction({half[0], half[1], half[2]}));
-    const GouraudError on = measure_gouraud(highlighted, with, inputs, highlight);
-    const GouraudError off = measure_gouraud(bare_mesh(without), without, inputs, highlight);
-    const GouraudError fine = measure_gouraud(finer_mesh, finer, inputs, highlight);
-    WARN("triangles " << highlighted.triangles.size() << " with, " << finer_mesh.triangles.size()
-                      << " finer; RMS in the highlight " << off.highlight_rms << " without, " << on.highlight_rms
-                      << " with, " << fine.highlight_rms << " finer; everywhere " << off.rms << ", " << on.rms << ", "
-                      << fine.rms);
-    CHECK(on.highlight_rms < 0.7 * off.highlight_rms);
-    CHECK(on.highlight_rms < 0.8 * fine.highlight_rms);
-    CHECK(on.highlight_triangles > 2 * off.highlight_triangles);
-    CHECK(on.highlight_triangles > 2 * on.other_triangles);
-}
-
-TEST_CASE("per-vertex against per-texel light: a flat mesh has no error, one with dark corners the whole light") {
-    Job job = functional_job();
-    job.map.source = MapSource::constant;
-    job.map.width = job.map.height = 32;
-    const MachineSetup flat = setup_of(job);
-    Highlight highlight;
-    const GouraudError none = measure_gouraud(bare_mesh(flat), flat, GoldenInputs(flat), highlight);
-    CHECK(none.texels >= 32 * 32);
-    CHECK(none.texels == none.highlight_texels);
-    CHECK(none.largest < 1e-9);
-    // With corners lit as if they faced away every texel is off by the whole light.
-    const EmittedMesh dark = changed(bare_mesh(flat), [](EmittedTriangle& triangle) {
-        for (auto& corner : triangle.corners)
-            corner.displaced_normal = {1 << 14, 0, 0};
-    });
-    const GouraudError all = measure_gouraud(dark, flat, GoldenInputs(flat), highlight);
-    CHECK(all.rms == Approx(1));
-    CHECK(all.highlight_rms == Approx(1));
 }
