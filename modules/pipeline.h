@@ -23,26 +23,9 @@
 
 namespace tessera {
 
-/// The machine of the paper's figure 7: every unit, every memory, and the wires between them.
-///
-///     host ──> Get Triangle ──> Calculate New P ──> Displace Vertex ──> Transform ─────────┐
-///                ^    │                             (displacement map)                     v
-///                │    └───────────────> Tessellation Tests ─────────────────────> Pass or Tessellate ──> Lighting
-///                │                      (Summed Height Table, normal map)                  │                 │
-///                └── Triangle Queue <── Tessellation <─────────────────────────────────────┘                 v
-///                                                                                                       rasteriser
-///
-/// In the family design (Design::work) the queue holds triangles that are known to split, and their children are tested
-/// before they enter the queue:
-///
-///     host ──> Get Triangle ──> Calculate New P ──> Displace Vertex ──> Transform
-///                ^    │                             (displacement map)      │
-///                │    └────────────────────────────> Tessellation <─────────┘
-///                │                                    │        │
-///                │                     Tessellation Tests      │
-///                │                (Summed Height Table,        │
-///                │                         normal map)         v
-///                └── Triangle Queue <──────────── └─> Pass or Tessellate ──> Lighting ──> rasteriser
+/// The machine of the paper's figure 7: every unit, every memory, and the wires between them (netlists.cpp). In the
+/// family design (Design::work) the queue holds triangles that are known to split, and their children are tested before
+/// they enter the queue. Block diagrams: modules/README.md.
 ///
 /// External: get_triangle.from_host, lighting.to_rasteriser; and write_table(), for the host.
 class Pipeline : public sc_core::sc_module {

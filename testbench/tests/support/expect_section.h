@@ -11,10 +11,10 @@ namespace tessera::testing {
 
 enum class SectionEnd { of_document, empty_line };
 
-/// Requires that a document, named relative to the source folder, has this text below a heading. With the environment
-/// variable set the test writes the text there instead.
+/// Requires that a document, named relative to the source folder, has this text below a heading. With TESSERA_WRITE in
+/// the environment the test writes the text there instead.
 inline void expect_section(const std::string& name, const std::string& heading, const std::string& text,
-                           const std::string& variable, SectionEnd end = SectionEnd::of_document) {
+                           SectionEnd end = SectionEnd::of_document) {
     const std::filesystem::path path = source_folder() / name;
     std::string document = read_all(path);
     const std::size_t begin = document.find(heading);
@@ -23,11 +23,11 @@ inline void expect_section(const std::string& name, const std::string& heading, 
     const std::size_t to = end == SectionEnd::of_document
                                ? document.size()
                                : std::min(document.find("\n\n", from), document.size() - 1) + 1;
-    if (std::getenv(variable.c_str()) != nullptr) {
+    if (std::getenv("TESSERA_WRITE") != nullptr) {
         write_all(path, document.replace(from, to - from, text));
         return;
     }
-    INFO(path << " says something else; " << variable << "=1 has the test write it");
+    INFO(path << " says something else; TESSERA_WRITE=1 has the test write it");
     CHECK((document.substr(from, to - from) == text));  // extra parentheses: nothing is printed
 }
 

@@ -240,7 +240,7 @@ TEST_CASE("the table of units in modules/README.md is the units' own") {
                     test->arithmetic, test->latency);
     }
     expect_section("modules/README.md", "| unit | work | arithmetic | latency |\n| --- | --- | --- | --- |\n", rows,
-                   "TESSERA_WRITE_UNITS", SectionEnd::empty_line);
+                   SectionEnd::empty_line);
 }
 
 TEST_CASE("unit numbers: a machine's units have their own, any other object is other, null is nobody") {

@@ -142,7 +142,7 @@ TEST_CASE("filters name every number as in the code") {
         CHECK(entry.number < UnitNumbers::other);
     }
     units += fmt::format("{:02X} other\n", UnitNumbers::other);
-    expect_section("waveforms/units.txt", "or Normal Test\n", units, "TESSERA_WRITE_UNITS");
+    expect_section("waveforms/units.txt", "or Normal Test\n", units);
 
     const std::map<unsigned, std::string> parts = read_filter("parts.txt");
     CHECK(parts.size() == last_edge_part + 1);

@@ -280,7 +280,7 @@ std::string table(Mode mode, const std::vector<Place>& places, std::vector<Kind>
 /// The part of testbench/prove/faults/FAULT_COVERAGE.md under a heading.
 void compare_with_document(const std::string& heading, const std::string& found) {
     testing::expect_section("testbench/prove/faults/FAULT_COVERAGE.md", "## " + heading + "\n\n", found,
-                            "TESSERA_WRITE_FAULT_COVERAGE", testing::SectionEnd::empty_line);
+                            testing::SectionEnd::empty_line);
 }
 
 }  // namespace
