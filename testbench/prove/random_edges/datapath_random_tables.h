@@ -2,8 +2,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "testbench/common/random.h"
 #include "testbench/prove/random_edges/datapath_edge.h"
-#include "testbench/prove/random_edges/datapath_random.h"
 
 namespace tessera::testing {
 

@@ -5,6 +5,7 @@
 
 #include "testbench/tests/support/checkout.h"
 #include "testbench/tests/support/program_runner.h"
+#include "testbench/tests/support/text.h"
 
 using namespace tessera;
 using Catch::Contains;
@@ -50,12 +51,6 @@ ProgramEnd sweep(const Checkout& checkout, const std::string& text, const std::s
     return checkout.run("scripts/sweep small.toml " + options);
 }
 
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-    const std::size_t at = text.find(from);
-    REQUIRE(at != std::string::npos);
-    return text.replace(at, from.size(), to);
-}
-
 std::size_t results_in(const fs::path& store) {
     std::size_t count = 0;
     if (fs::exists(store))
@@ -70,7 +65,7 @@ TEST_CASE("sweep: if no design finishes, the first reason is said, and the exit 
     if (!sweeps_run())
         return;
     const Checkout checkout;
-    const ProgramEnd end = sweep(checkout, replaced(small, "[set]\n", "[set]\n\"limits.triangles\" = 1\n"));
+    const ProgramEnd end = sweep(checkout, testing::replaced(small, "[set]\n", "[set]\n\"limits.triangles\" = 1\n"));
     INFO(end.text());
     CHECK(end.exit_code == 1);
     CHECK_THAT(end.err, Contains("no design finished; the first says: exit code 4: "));
@@ -97,12 +92,14 @@ TEST_CASE("sweep: each design is a row, the front is marked, a failed run is a r
     CHECK_THAT(end.err, Contains("9 designs; 8 runs to do") && Contains("6 ok, 3 failed"));
 
     INFO("a sweep that shares designs runs only what is new");
-    CHECK_THAT(sweep(checkout, replaced(small, "[1, 2, 4]", "[1, 2, 4, 8]"), "--check").err,
+    CHECK_THAT(sweep(checkout, testing::replaced(small, "[1, 2, 4]", "[1, 2, 4, 8]"), "--check").err,
                Contains("12 designs; 3 runs to do"));
 
     INFO("the effective job is the address: a default that is written out is the same run");
-    CHECK_THAT(sweep(checkout, replaced(small, "[set]\n", "[set]\n\"timing.transform_latency\" = 20\n"), "--check").err,
-               Contains("9 designs; 0 runs to do"));
+    CHECK_THAT(
+        sweep(checkout, testing::replaced(small, "[set]\n", "[set]\n\"timing.transform_latency\" = 20\n"), "--check")
+            .err,
+        Contains("9 designs; 0 runs to do"));
 
     INFO("keys beside hardware.design stay as the sweep has them; `unbounded` and `stack` are then the same");
     const std::string modern = "[[axis]]\nkey = \"hardware.design\"\nvalues = [\"modern\"]\n";
@@ -187,7 +184,7 @@ TEST_CASE("sweep: a result is named by the content of every file that it depends
     const auto is_an_input = [&](const fs::path& file, const std::string& from, const std::string& to) {
         INFO(file.lexically_relative(root).string());
         const std::string before = read_all(file);
-        write_all(file, replaced(before, from, to));
+        write_all(file, testing::replaced(before, from, to));
         is_another("");
         write_all(file, before);
         CHECK_THAT(to_do(""), Contains("; 0 runs to do"));
@@ -203,7 +200,7 @@ TEST_CASE("sweep: a result is named by the content of every file that it depends
 
     INFO("the same names in another data folder, named from here, not from a run's folder");
     fs::create_directories(root / "other");
-    write_all(root / "other/map.pgm", replaced(map, "90", "92"));
+    write_all(root / "other/map.pgm", testing::replaced(map, "90", "92"));
     write_all(root / "other/mesh.obj", square);
     is_another("TESSERA_DATA=other ");
     CHECK_THAT(to_do("TESSERA_DATA=other "), Contains("; 0 runs to do"));
@@ -240,7 +237,7 @@ TEST_CASE("sweep: an axis along which no figure changes is named, on the page to
         return;
     const Checkout checkout;
     const auto axis = [](const std::string& keys) { return "[[axis]]\n" + keys; };
-    const std::string sweep_of = replaced(small, small.substr(small.find("[[axis]]")), ""),
+    const std::string sweep_of = testing::replaced(small, small.substr(small.find("[[axis]]")), ""),
                       ports = axis("key = \"timing.summed_height_table_ports\"\nvalues = [1, 2]\n"),
                       idle = axis("key = \"timing.height_table_ports\"\nvalues = [1, 4]\n"),
                       pair = axis(
@@ -262,12 +259,12 @@ TEST_CASE("sweep: a run that does not end is a row, and is tried again") {
     if (!sweeps_run())
         return;
     const Checkout checkout;
-    const ProgramEnd end = sweep(checkout, "longest_run = 0.001\n" + replaced(small, "[1, 2, 4]", "[1]"));
+    const ProgramEnd end = sweep(checkout, "longest_run = 0.001\n" + testing::replaced(small, "[1, 2, 4]", "[1]"));
     INFO(end.text());
     CHECK(end.exit_code == 1);
     CHECK_THAT(read_all(checkout.root() / "runs/sweeps/small/table.csv"),
                Contains(",no result,took longer than 0.001 s,"));
-    CHECK(sweep(checkout, replaced(small, "[1, 2, 4]", "[1]")).exit_code == 0);
+    CHECK(sweep(checkout, testing::replaced(small, "[1, 2, 4]", "[1]")).exit_code == 0);
 }
 
 TEST_CASE("sweep: workers that share a study search some of the designs, each run once") {
@@ -435,7 +432,7 @@ TEST_CASE("sweep: an invalid study is refused before the first run, with file an
     }));
     if (!sweeps_run())
         return;
-    const ProgramEnd end = sweep(checkout, replaced(small, from, to));
+    const ProgramEnd end = sweep(checkout, testing::replaced(small, from, to));
     INFO(from << " -> " << to << end.text());
     CHECK(end.exit_code == 2);
     CHECK_THAT(end.err, Contains(message));

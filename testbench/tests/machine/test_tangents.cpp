@@ -19,8 +19,10 @@
 #include "testbench/setup/mesh/texture_gradient.h"
 #include "testbench/setup/mesh/texture_scale.h"
 #include "testbench/tests/check/conformance/setup_run.h"
+#include "testbench/tests/support/bare_mesh.h"
 #include "testbench/tests/support/case_table.h"
 #include "testbench/tests/support/job_settings.h"
+#include "testbench/tests/support/text.h"
 
 using namespace tessera;
 using namespace tessera::testing;
@@ -115,20 +117,6 @@ MachineSetup setup_of(const BaseMesh& mesh, const HeightMap& map, const std::str
     return make_setup(resolve_job(plane_job(settings), mesh, map).job, mesh, map);
 }
 
-std::string remarks_of(const MachineSetup& setup) {
-    std::string all;
-    for (const std::string& remark : setup.remarks)
-        all += remark + '\n';
-    return all;
-}
-
-std::string repairs_of(const BaseMesh& mesh) {
-    std::string all;
-    for (const std::string& repair : mesh.repairs)
-        all += repair + '\n';
-    return all;
-}
-
 struct NormalErrors {
     std::vector<double> degrees;  // sorted
     double largest() const { return degrees.back(); }
@@ -163,12 +151,6 @@ NormalErrors normal_errors(const Plane& plane, const MachineSetup& setup, const 
         }
     std::sort(errors.degrees.begin(), errors.degrees.end());
     return errors;
-}
-
-EmittedMesh emitted(const MachineSetup& setup) {
-    EmittedMesh mesh;
-    BareRecursion(setup).run(mesh);
-    return mesh;
 }
 
 struct Row {
@@ -218,7 +200,7 @@ std::vector<Row> right_rows() {
 
 const CaseTable right_normals("emitted normals are those of the displaced plane: ", right_rows(), [](const Row& row) {
     const MachineSetup setup = setup_of(row.plane.mesh(), hill_map(), row.settings);
-    const EmittedMesh mesh = emitted(setup);
+    const EmittedMesh mesh = testing::bare_mesh(setup);
     const NormalErrors errors = normal_errors(row.plane, setup, mesh);
     REQUIRE(errors.degrees.size() > 300);
     CHECK(errors.median() < 1);
@@ -228,7 +210,7 @@ const CaseTable right_normals("emitted normals are those of the displaced plane:
     if (row.closed)
         CHECK(invariants.open_texture_seam_edges == 0);
     CHECK(invariants.open_crease_edges == 0);
-    CHECK_THAT(remarks_of(setup), !Contains("texel size"));
+    CHECK_THAT(testing::joined(setup.remarks), !Contains("texel size"));
     // golden's frames and texel size are the host's
     Plane plane = row.plane;
     SetupRun run(plane_job(row.settings + " tests.generation_limit=2"), plane.mesh(), hill_map(32));
@@ -245,12 +227,12 @@ TEST_CASE("vertices that share one frame although their texture differs are 46 d
     for (BaseVertex& vertex : mesh.vertices)
         vertex.tangent = {1, 0, 0};
     const MachineSetup setup = setup_of(mesh, hill_map());
-    CHECK(normal_errors(plane, setup, emitted(setup)).largest() > 40);
+    CHECK(normal_errors(plane, setup, testing::bare_mesh(setup)).largest() > 40);
 }
 
 TEST_CASE("triangles with only mirrored edges are counted, and each remedy works") {
     const BaseMesh mesh = Plane{4, 1, {straight, mirrored_u, straight, mirrored_u}}.mesh();
-    CHECK_THAT(repairs_of(mesh),
+    CHECK_THAT(testing::joined(mesh.repairs),
                Contains("At 6 point(s) the texture is mirrored") && Contains("4 triangle(s) have only such points"));
     for (const BaseVertex& vertex : mesh.vertices)
         CHECK((vertex.tangent == glm::dvec3(0)) == (vertex.position.x > 0 && vertex.position.x < 4));
@@ -261,10 +243,11 @@ TEST_CASE("triangles with only mirrored edges are counted, and each remedy works
                      {{0.5, 0}, {0.5, 0}, {0, 1}},
                      {{1, 0}, {-0.5, 0}, {0, 1}},
                      {{0.5, 0}, {-0.5, 0}, {0, 1}}}};
-    CHECK_THAT(repairs_of(cut.mesh()), Contains("At 2 point(s) the texture is mirrored") && !Contains("only such"));
+    CHECK_THAT(testing::joined(cut.mesh().repairs),
+               Contains("At 2 point(s) the texture is mirrored") && !Contains("only such"));
     // a place of its own
     const Plane apart{2, 1, {{{0, 0}, {0.5, 0}, {0, 1}}, {{0.95, 0}, {-0.5, 0}, {0, 1}}}};
-    CHECK(repairs_of(apart.mesh()).empty());
+    CHECK(testing::joined(apart.mesh().repairs).empty());
 }
 
 TEST_CASE("a small triangle turned over in the map follows the others around it") {
@@ -273,7 +256,7 @@ TEST_CASE("a small triangle turned over in the map follows the others around it"
         "v 0 0 0\nv 1 0 0\nv 0 1 0\nv -1 0 0\nv 0 -1 0\nv 0.02 -1 0\nvt .5 .5\nvt 1 .5\nvt .5 1\nvt 0 .5\nvt .5 0\n"
         "vt .49 0\nf 1/1 2/2 3/3\nf 1/1 3/3 4/4\nf 1/1 4/4 5/5\nf 1/1 5/5 6/6\nf 1/1 6/6 2/2\n";
     const BaseMesh mesh = parse_obj(fan, "fan");
-    CHECK_THAT(repairs_of(mesh), Contains("a few small triangles are mirrored"));
+    CHECK_THAT(testing::joined(mesh.repairs), Contains("a few small triangles are mirrored"));
     CHECK(mesh.vertices[0].handedness == 1);
     CHECK(mesh.vertices[0].tangent.x > 0.99);
 }
@@ -289,11 +272,12 @@ TEST_CASE(
                "vn 0 0 1\nvt .5 .3\nvt .5 .5\nvt .7 .3\nvt .3 .3\nf 1/1/1 3/2/1 2/2/1\nf 1/1/1 4/3/1 3/2/1\n"
                "f 1/1/1 2/2/1 5/4/1\n";
     };
-    CHECK_THAT(repairs_of(parse_obj(fan(60), "fan")),
+    CHECK_THAT(testing::joined(parse_obj(fan(60), "fan").repairs),
                Contains("1 triangle(s) have no area") &&
                    Contains("At 1 point(s) triangles without area in texture space connect") &&
                    Contains("up to 30 degrees from their own"));
-    CHECK_THAT(repairs_of(parse_obj(fan(10), "fan")), Contains("1 triangle(s) have no area") && !Contains("connect"));
+    CHECK_THAT(testing::joined(parse_obj(fan(10), "fan").repairs),
+               Contains("1 triangle(s) have no area") && !Contains("connect"));
 }
 
 TEST_CASE("a coarse prism whose cap has no area in the map has one part around each point of its rim") {
@@ -308,7 +292,7 @@ TEST_CASE("a coarse prism whose cap has no area in the map has one part around e
                              low + 2, high + 2, high, normal, next);
         faces += fmt::format("f 1/1/1 {0}/{0}/{2} {1}/{1}/{3}\n", high, high + 2, normal, next);
     }
-    CHECK_THAT(repairs_of(parse_obj(text + faces, "prism")),
+    CHECK_THAT(testing::joined(parse_obj(text + faces, "prism").repairs),
                Contains("6 triangle(s) have no area") && !Contains("connect"));
 }
 
@@ -326,14 +310,14 @@ TEST_CASE("at a pole triangles with their own coordinates have their own tangent
     }
     const std::string points = "v 0 0 0\n" + ring + "vn 0 0 1\n";
     const BaseMesh apart = parse_obj(points + own + "vt 1 0\n" + own_faces, "own");
-    CHECK(repairs_of(apart).empty());
+    CHECK(testing::joined(apart.repairs).empty());
     for (std::size_t k = 0; k < 6; ++k) {
         const double middle = (static_cast<double>(k) + 0.5) * pi / 3;
         const BaseVertex& pole = apart.vertices[apart.triangles[k][0]];
         CHECK(safe_length(pole.tangent - glm::dvec3(-std::sin(middle), std::cos(middle), 0)) < 1e-9);
     }
     const BaseMesh together = parse_obj(points + one + "vt 1 0\n" + one_faces, "one");
-    CHECK_THAT(repairs_of(together), Contains("At 1 point(s) the directions of dp/du cancel"));
+    CHECK_THAT(testing::joined(together.repairs), Contains("At 1 point(s) the directions of dp/du cancel"));
     CHECK(together.vertices[together.triangles[0][0]].tangent == glm::dvec3(0));
 }
 
@@ -393,31 +377,31 @@ Plane parts_along_u(double part) {
     return {2, 1, {{{0, 0}, {part, 0}, {0, 0.5}}, {{part, 0}, {1 - part, 0}, {0, 0.5}}}};
 }
 
-const CaseTable spreads("one texel size: ",
-                        {Spread{"1/8 and 7/8 of the map", parts_along_u(0.125), true},
-                         {"3/10 and 7/10 of the map", parts_along_u(0.3), true},
-                         {"halves of the map", parts_along_u(0.5), false},
-                         {"along v", {1, 2, {{{0, 0}, {1, 0}, {0, 0.2}}, {{0, 0.2}, {1, 0}, {0, 0.8}}}}, true},
-                         {"an island of twice the density", {2, 1, {straight, turned(0, 0.5)}}, true},
-                         {"sheared by a half", {1, 1, {{{0.1, 0}, {0.6, 0}, {0.3, 0.6}}}}, true},
-                         {"1/8 and 7/8 of the map, hardly displaced", parts_along_u(0.125), false,
-                          "displacement.scale=0.002"}},
-                        [](const Spread& row) {
-                            const MachineSetup setup = setup_of(row.plane.mesh(), hill_map(), row.settings);
-                            const TexelSpread& spread = setup.texel_spread;
-                            INFO(remarks_of(setup)
-                                 << spread.median_error << ' ' << spread.largest_error << ' ' << spread.wrong_percent);
-                            CHECK((remarks_of(setup).find("one texel size") != std::string::npos) == row.matters);
-                            CHECK((spread.wrong_percent > 1) == row.matters);
-                            const NormalErrors errors = normal_errors(row.plane, setup, emitted(setup));
-                            if (row.matters) {
-                                // The figure is of the surface; vertices are denser on slopes.
-                                CHECK(errors.largest() == Approx(spread.largest_error).margin(1.5));
-                                CHECK(errors.median() > 1);
-                            } else {
-                                CHECK(errors.largest() < 2);
-                            }
-                        });
+const CaseTable spreads(
+    "one texel size: ",
+    {Spread{"1/8 and 7/8 of the map", parts_along_u(0.125), true},
+     {"3/10 and 7/10 of the map", parts_along_u(0.3), true},
+     {"halves of the map", parts_along_u(0.5), false},
+     {"along v", {1, 2, {{{0, 0}, {1, 0}, {0, 0.2}}, {{0, 0.2}, {1, 0}, {0, 0.8}}}}, true},
+     {"an island of twice the density", {2, 1, {straight, turned(0, 0.5)}}, true},
+     {"sheared by a half", {1, 1, {{{0.1, 0}, {0.6, 0}, {0.3, 0.6}}}}, true},
+     {"1/8 and 7/8 of the map, hardly displaced", parts_along_u(0.125), false, "displacement.scale=0.002"}},
+    [](const Spread& row) {
+        const MachineSetup setup = setup_of(row.plane.mesh(), hill_map(), row.settings);
+        const TexelSpread& spread = setup.texel_spread;
+        INFO(testing::joined(setup.remarks)
+             << spread.median_error << ' ' << spread.largest_error << ' ' << spread.wrong_percent);
+        CHECK((testing::joined(setup.remarks).find("one texel size") != std::string::npos) == row.matters);
+        CHECK((spread.wrong_percent > 1) == row.matters);
+        const NormalErrors errors = normal_errors(row.plane, setup, testing::bare_mesh(setup));
+        if (row.matters) {
+            // The figure is of the surface; vertices are denser on slopes.
+            CHECK(errors.largest() == Approx(spread.largest_error).margin(1.5));
+            CHECK(errors.median() > 1);
+        } else {
+            CHECK(errors.largest() < 2);
+        }
+    });
 
 TEST_CASE("one texel size: an island that is small on the surface and large in the map is said") {
     BaseMesh mesh = parts_along_u(0.5).mesh();
@@ -427,16 +411,17 @@ TEST_CASE("one texel size: an island that is small on the surface and large in t
             vertex.position = glm::dvec3(0) + vertex.position * shrunk;
     measure_texture_scale(mesh);
     const MachineSetup setup = setup_of(mesh, hill_map(), "");
-    INFO(remarks_of(setup) << setup.texel_spread.wrong_percent << ' ' << setup.texel_spread.wrong_map_percent);
+    INFO(testing::joined(setup.remarks) << setup.texel_spread.wrong_percent << ' '
+                                        << setup.texel_spread.wrong_map_percent);
     CHECK(setup.texel_spread.wrong_map_percent > 1);
-    CHECK_THAT(remarks_of(setup), Contains("one texel size") && Contains("% of the map there"));
+    CHECK_THAT(testing::joined(setup.remarks), Contains("one texel size") && Contains("% of the map there"));
 }
 
 TEST_CASE("one texel size: triangles with next to no area in the map are said") {
     const Plane plane{2, 1, {{{0.3, 0.2}, {1e-6, 0}, {0, 1}}, {{0, 0}, {1, 0}, {0, 1}}}};
     const MachineSetup setup = setup_of(plane.mesh(), hill_map(), "");
     CHECK(setup.texel_spread.wrong_percent > 1);
-    CHECK_THAT(remarks_of(setup), Contains("some have next to no area in it. Normals are off by"));
+    CHECK_THAT(testing::joined(setup.remarks), Contains("some have next to no area in it. Normals are off by"));
 }
 
 TEST_CASE("one texel size: one so large that the normal map is flat is said") {
@@ -444,7 +429,7 @@ TEST_CASE("one texel size: one so large that the normal map is flat is said") {
     mesh.texture_scale.mean_u = mesh.texture_scale.mean_v = 1e6;
     const MachineSetup setup = setup_of(mesh, hill_map(), "");
     CHECK(setup.texel_spread.wrong_percent > 50);
-    CHECK_THAT(remarks_of(setup), Contains("one texel size"));
+    CHECK_THAT(testing::joined(setup.remarks), Contains("one texel size"));
 }
 
 const std::string corners_of_cube =
@@ -466,7 +451,7 @@ std::string cube(bool with_normals) {
 
 InvariantResult invariants_of(const BaseMesh& mesh, const HeightMap& map) {
     const MachineSetup setup = setup_of(mesh, map, "tests.generation_limit=3");
-    return check_invariants(emitted(setup), setup);
+    return check_invariants(testing::bare_mesh(setup), setup);
 }
 
 HeightMap level_map() {
@@ -479,14 +464,15 @@ HeightMap level_map() {
 
 TEST_CASE("edges opened by split normals are creases, whatever their texture coordinates") {
     const BaseMesh flat = parse_obj(cube(true), "cube");
-    CHECK_THAT(repairs_of(flat), Contains("8 point(s) have more than one normal") &&
-                                     Contains("Export the mesh with smooth normals, or its faces without normals"));
+    CHECK_THAT(testing::joined(flat.repairs),
+               Contains("8 point(s) have more than one normal") &&
+                   Contains("Export the mesh with smooth normals, or its faces without normals"));
     SECTION("a level map: the normals alone open the cube, the remedy closes it") {
         const InvariantResult result = invariants_of(flat, level_map());
         CHECK(result.open_crease_edges == 12);
         CHECK(result.open_texture_seam_edges == 0);
         const BaseMesh smooth = parse_obj(cube(false), "cube");
-        CHECK_THAT(repairs_of(smooth), !Contains("normal"));
+        CHECK_THAT(testing::joined(smooth.repairs), !Contains("normal"));
         const InvariantResult remedied = invariants_of(smooth, level_map());
         CHECK(remedied.open_crease_edges + remedied.open_texture_seam_edges == 0);
     }

@@ -8,6 +8,7 @@
 #include "testbench/run_folder/ply_reader.h"
 #include "testbench/run_folder/read_run.h"
 #include "testbench/tests/support/test_folder.h"
+#include "testbench/tests/support/text.h"
 
 using namespace tessera;
 using Catch::Contains;
@@ -48,12 +49,6 @@ MeshUnits units() {
     units.scale = 0.5;
     units.centre = {10, 20, 30.1};
     return units;
-}
-
-std::string replaced(std::string text, const std::string& what, const std::string& by) {
-    const std::size_t place = text.find(what);
-    REQUIRE(place != std::string::npos);
-    return text.replace(place, what.size(), by);
 }
 
 /// Reads the bytes as a file; returns the message if they are refused, which must name the file and the remedy.
@@ -136,7 +131,7 @@ TEST_CASE("a mesh file with other contents in its header is refused with these c
     write_ply(here / "mesh.ply", small_mesh(), units());
     const std::string whole = read_all(here / "mesh.ply");
     const auto with = [&](const std::string& what, const std::string& by) {
-        return refusal(here, replaced(whole, what, by));
+        return refusal(here, testing::replaced(whole, what, by));
     };
     CHECK_THAT(with("ply\n", "obj\n"), Contains("\"obj\""));
     CHECK_THAT(with("binary_little_endian", "ascii"), Contains("ascii"));

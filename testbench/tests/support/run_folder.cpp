@@ -6,6 +6,7 @@
 
 #include "modules/datapath/height_tests.h"
 #include "testbench/tests/support/program_runner.h"
+#include "testbench/tests/support/text.h"
 
 namespace tessera {
 
@@ -27,12 +28,6 @@ std::vector<std::string> cells_of(const std::string& row) {
         else
             cells.back() += c;
     return cells;
-}
-
-std::uint64_t number_after(const std::string& text, const std::string& words) {
-    const std::size_t at = text.find(words);
-    REQUIRE(at != std::string::npos);
-    return std::stoull(text.substr(at + words.size()));
 }
 
 }  // namespace
@@ -68,8 +63,8 @@ PlyFacts RunFolder::read_ply() const {
     const std::size_t header = ply.find(end);
     REQUIRE(header != std::string::npos);
     PlyFacts facts;
-    facts.vertices = number_after(ply, "element vertex ");
-    facts.faces = number_after(ply, "element face ");
+    facts.vertices = testing::number_after(ply, "element vertex ");
+    facts.faces = testing::number_after(ply, "element face ");
     const std::size_t faces = header + end.size() + facts.vertices * vertex_bytes;
     REQUIRE(ply.size() == faces + facts.faces * face_bytes);
     for (std::size_t k = 0; k < facts.faces; ++k)

@@ -11,14 +11,10 @@
 #include "testbench/machine/inputs.h"
 #include "testbench/machine/simulation.h"
 #include "testbench/tests/machine/mesh_keys.h"
+#include "testbench/tests/support/job_setup.h"
 
 /// Requirements on every timed run, for any job and timing.
 namespace tessera::testing {
-
-inline MachineSetup setup_of(const Job& job) {
-    const Inputs inputs = load_inputs(job);
-    return make_setup(inputs.resolved.job, inputs.mesh, inputs.map);
-}
 
 inline Job timed_job() {
     Job job;

@@ -12,9 +12,9 @@
 #include "modules/datapath/parameters.h"
 #include "testbench/check/conformance/golden_inputs.h"
 #include "testbench/check/conformance/scoreboard.h"
+#include "testbench/common/random.h"
 #include "testbench/machine/machine_setup.h"
 #include "testbench/prove/random_edges/datapath_edge.h"
-#include "testbench/prove/random_edges/datapath_random.h"
 
 /// Random designs, maps, views and triangles for the scoreboard's tests.
 namespace tessera::testing {

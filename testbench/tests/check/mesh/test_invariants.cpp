@@ -13,6 +13,7 @@
 #include "testbench/machine/bare_recursion.h"
 #include "testbench/machine/inputs.h"
 #include "testbench/tests/support/edited_mesh.h"
+#include "testbench/tests/support/job_setup.h"
 
 /// The emitted mesh against the expected one. test_lineage.cpp tests that the datapath's own mesh is closed.
 namespace tessera {
@@ -37,7 +38,7 @@ void require_only(const InvariantResult& result, const Expected& expected) {
 
 /// A plane of 2 x 2 quads of base triangles over the whole map, and its mesh from the datapath.
 struct Plane {
-    MachineSetup setup = make();
+    MachineSetup setup = testing::setup_of(testing::noise_job());
     std::vector<EmittedTriangle> triangles;
     Plane() {
         EmittedMesh mesh;
@@ -50,19 +51,6 @@ struct Plane {
     /// The first triangle of base triangle 5.
     EmittedTriangle& some_triangle() {
         return *std::find_if(triangles.begin(), triangles.end(), [](const EmittedTriangle& t) { return t.base == 5; });
-    }
-
-  private:
-    static MachineSetup make() {
-        Job job;
-        job.mode = Mode::functional;
-        job.mesh.columns = job.mesh.rows = 2;
-        job.map.source = MapSource::noise;
-        job.map.width = job.map.height = 32;
-        job.tests.view = false;
-        job.tests.generation_limit = 4;
-        const Inputs inputs = load_inputs(job);
-        return make_setup(inputs.resolved.job, inputs.mesh, inputs.map);
     }
 };
 

@@ -10,6 +10,7 @@
 #include "modules/datapath/tessellate.h"
 #include "testbench/machine/bare_recursion.h"
 #include "testbench/machine/inputs.h"
+#include "testbench/tests/support/job_setup.h"
 
 /// The check by descent: with the datapath as it is, on base meshes of all kinds, and with a faulty one.
 namespace tessera {
@@ -17,25 +18,11 @@ namespace {
 
 using datapath::Triangle;
 using datapath::TrianglePass;
-
-Job small_job() {
-    Job job;
-    job.mode = Mode::functional;
-    job.mesh.columns = job.mesh.rows = 2;
-    job.map.source = MapSource::noise;
-    job.map.width = job.map.height = 32;
-    job.tests.view = false;
-    job.tests.generation_limit = 4;
-    return job;
-}
-
-MachineSetup setup_of(const Job& job) {
-    const Inputs inputs = load_inputs(job);
-    return make_setup(inputs.resolved.job, inputs.mesh, inputs.map);
-}
+using testing::noise_job;
+using testing::setup_of;
 
 MachineSetup round_setup(Addressing address_u) {
-    Job job = small_job();
+    Job job = noise_job();
     job.mesh.source = MeshSource::cylinder;
     job.mesh.columns = 6;
     job.mesh.rows = 1;
@@ -121,7 +108,7 @@ bool is_on_border(const MachineSetup& setup, const TrianglePass& pass, int k) {
 }  // namespace
 
 TEST_CASE("lineage: a plane has no faults") {
-    const MachineSetup setup = setup_of(small_job());
+    const MachineSetup setup = setup_of(noise_job());
     const InvariantResult result = check(setup);
     require_faults(result, 0, 0, 0);
     CHECK(result.base_edges == 16);
@@ -132,7 +119,7 @@ TEST_CASE("lineage: a plane has no faults") {
 }
 
 TEST_CASE("lineage: any finished triangle left out, doubled or turned over is found") {
-    const MachineSetup setup = setup_of(small_job());
+    const MachineSetup setup = setup_of(noise_job());
     std::size_t passes = 0;
     check_broken(setup, [&](Broken& broken, std::size_t, const TrianglePass& pass, const Lineage::Note& note) {
         ++passes;
@@ -173,7 +160,7 @@ TEST_CASE("lineage: any finished triangle left out, doubled or turned over is fo
 }
 
 TEST_CASE("lineage: an edge split by one triangle alone is a T-vertex, except on the base mesh's border") {
-    const MachineSetup setup = setup_of(small_job());
+    const MachineSetup setup = setup_of(noise_job());
     std::size_t inside = 0, on_border = 0;
     for (std::size_t n = 0; n < 600; n += 5)
         for (int k = 0; k < 3; ++k) {
@@ -198,7 +185,7 @@ TEST_CASE("lineage: an edge split by one triangle alone is a T-vertex, except on
 }
 
 TEST_CASE("lineage: a vertex that differs between triangles in any field is found, once") {
-    const MachineSetup setup = setup_of(small_job());
+    const MachineSetup setup = setup_of(noise_job());
     const std::vector<std::function<void(datapath::Vertex&)>> changes{[](auto& v) { v.position.x += 1; },
                                                                       [](auto& v) { v.normal.y += 1; },
                                                                       [](auto& v) { v.tangent.z += 1; },
@@ -225,7 +212,7 @@ TEST_CASE("lineage: a vertex that differs between triangles in any field is foun
 }
 
 TEST_CASE("lineage: a wrong triangulation leaves edges without their triangles") {
-    const MachineSetup setup = setup_of(small_job());
+    const MachineSetup setup = setup_of(noise_job());
     SECTION("a child wound the other way") {
         for (const std::size_t n : {0U, 5U, 50U}) {
             const InvariantResult result = check_broken(setup, {}, [&](std::size_t number, auto corners) {
@@ -254,7 +241,7 @@ TEST_CASE("lineage: a wrong triangulation leaves edges without their triangles")
 }
 
 TEST_CASE("lineage: a shared base vertex with two generations is found with its cracks") {
-    const MachineSetup setup = setup_of(small_job());
+    const MachineSetup setup = setup_of(noise_job());
     // One copy of a shared vertex is of the last generation, so that its triangles do not split their edges there.
     MachineSetup older = setup;
     older.base_triangles[1].vertices[1].generation = static_cast<std::uint8_t>(setup.registers.tests.generation_limit);
@@ -266,7 +253,7 @@ TEST_CASE("lineage: a shared base vertex with two generations is found with its 
 }
 
 TEST_CASE("lineage: duplicated base triangles and a mesh folded onto itself are not faults") {
-    MachineSetup setup = setup_of(small_job());
+    MachineSetup setup = setup_of(noise_job());
     const std::size_t once = setup.base_triangles.size();
     for (std::size_t b = 0; b < once; ++b) {  // a second copy, wound the opposite way
         Triangle other = setup.base_triangles[b];
@@ -332,7 +319,7 @@ TEST_CASE("lineage: a cylinder's seam") {
 
 TEST_CASE("lineage: open pieces along a seam are counted on the finer side") {
     // Two triangles over one map; the copies of their common edge are half the map apart. One splits, one does not.
-    MachineSetup setup = setup_of(small_job());
+    MachineSetup setup = setup_of(noise_job());
     setup.base_triangles.resize(2);
     for (datapath::Vertex& v : setup.base_triangles[1].vertices)
         v.generation = static_cast<std::uint8_t>(setup.registers.tests.generation_limit);  // does not split
@@ -353,7 +340,7 @@ TEST_CASE("lineage: open pieces along a seam are counted on the finer side") {
 }
 
 TEST_CASE("lineage: open edges along a crease of the base mesh are not faults") {
-    MachineSetup setup = setup_of(small_job());
+    MachineSetup setup = setup_of(noise_job());
     for (std::size_t b = 4; b < 8; ++b)
         for (datapath::Vertex& v : setup.base_triangles[b].vertices)
             v.normal = {0, 11585, 11585};

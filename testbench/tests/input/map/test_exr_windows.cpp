@@ -11,6 +11,7 @@
 #include "testbench/common/error.h"
 #include "testbench/input/map/read_height_map.h"
 #include "testbench/tests/input/map/map_test_files.h"
+#include "testbench/tests/support/text.h"
 
 using namespace tessera;
 using namespace tessera::map_test;
@@ -32,11 +33,6 @@ HeightMap read(const ExrImage& image, const std::string& channel = {}) {
     const TestFolder folder;
     write_exr(folder / "a.exr", image);
     return read_height_map(folder / "a.exr", channel);
-}
-
-std::string all_repairs(const HeightMap& map) {
-    return std::accumulate(map.repairs.begin(), map.repairs.end(), std::string(),
-                           [](const std::string& all, const std::string& one) { return all + one + '\n'; });
 }
 
 }  // namespace
@@ -70,7 +66,7 @@ TEST_CASE("an EXR map is the display window: outside the data 0, data beyond it 
                     const bool stored = column >= 0 && column < 6 && line >= 0 && line < 5;
                     CHECK(map.at(x, map.height - 1 - y) == static_cast<float>(stored ? 6 * line + column + 1 : 0));
                 }
-            CHECK_THAT(all_repairs(map), Contains(row.remark));
+            CHECK_THAT(testing::joined(map.repairs), Contains(row.remark));
             CHECK(map.repairs.size() == (*row.remark == '\0' ? 0 : 1));
         }
 }
@@ -112,7 +108,7 @@ TEST_CASE("an EXR map of several channels says which it takes and which differ")
                             const std::string& channel = {}) {
         image.channels = std::move(channels);
         image.planes = std::move(planes);
-        return all_repairs(read(image, channel));
+        return testing::joined(read(image, channel).repairs);
     };
     image.tiled = GENERATE(false, true);
     INFO("grey, with or without alpha");
@@ -150,6 +146,7 @@ TEST_CASE("luminance of an EXR file with subsampled chroma is read, and the chro
     }
     const HeightMap map = read_height_map(path);
     CHECK(map.width == 8);
-    CHECK_THAT(all_repairs(map), Contains("heights are those of channel Y; channels BY, RY hold other values, and"));
+    CHECK_THAT(testing::joined(map.repairs),
+               Contains("heights are those of channel Y; channels BY, RY hold other values, and"));
     CHECK_THROWS_WITH(read_height_map(path, "RY"), Contains("only every 2 x 2 pixel"));
 }

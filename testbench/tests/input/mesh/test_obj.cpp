@@ -12,6 +12,7 @@
 #include "testbench/input/mesh/surface_flaws.h"
 #include "testbench/setup/mesh/tangent_frames.h"
 #include "testbench/tests/input/mesh/mesh_checks.h"
+#include "testbench/tests/support/text.h"
 
 using namespace tessera;
 using Catch::Contains;
@@ -27,13 +28,6 @@ const std::string square =
 
 BaseMesh parse(const std::string& text) {
     return parse_obj(text, "test.obj");
-}
-
-std::string all_repairs(const BaseMesh& mesh) {
-    std::string all;
-    for (const std::string& repair : mesh.repairs)
-        all += repair + "\n";
-    return all;
 }
 
 /// Area of the mesh in the x,y plane; triangles that face downwards count as negative.
@@ -60,7 +54,7 @@ std::string polygon(const std::vector<glm::dvec2>& outline) {
 TEST_CASE("a good quad loads without a repair") {
     const BaseMesh mesh = parse(square + "f 1/1/1 2/2/1 3/3/1 4/4/1\n");
     require_complete(mesh);
-    CHECK(all_repairs(mesh) == "");
+    CHECK(testing::joined(mesh.repairs) == "");
     REQUIRE(mesh.triangles.size() == 2);
     CHECK(mesh.triangles[0] == std::array<std::uint32_t, 3>{0, 1, 2});
     CHECK(mesh.triangles[1] == std::array<std::uint32_t, 3>{0, 2, 3});
@@ -86,7 +80,7 @@ TEST_CASE("all forms of an OBJ file give the same mesh") {
                 with_ending += c == '\n' ? ending : std::string(1, c);
             INFO(with_ending);
             const BaseMesh mesh = parse(with_ending);
-            CHECK(all_repairs(mesh) == "");
+            CHECK(testing::joined(mesh.repairs) == "");
             CHECK(mesh.triangles == wanted.triangles);
             REQUIRE(mesh.vertices.size() == 4);
             for (std::size_t i = 0; i < 4; ++i) {
@@ -151,10 +145,11 @@ TEST_CASE("bad input ends in an error with file and line") {
 TEST_CASE("corners without texture coordinates get a projected map, with a repair") {
     const BaseMesh mesh = parse("v 0 0 5\nv 4 0 5\nv 0 2 5\nf 1 2 3\n");
     require_complete(mesh);
-    CHECK_THAT(all_repairs(mesh), StartsWith("3 vertices have no texture coordinates") && Contains("along z"));
+    CHECK_THAT(testing::joined(mesh.repairs),
+               StartsWith("3 vertices have no texture coordinates") && Contains("along z"));
     CHECK(mesh.vertices[1].texture == glm::dvec2(1, 0));
     CHECK(mesh.vertices[2].texture == glm::dvec2(0, 1));
-    CHECK_THAT(all_repairs(parse(square + "f 1/1 2 3/3\n")),
+    CHECK_THAT(testing::joined(parse(square + "f 1/1 2 3/3\n").repairs),
                StartsWith("1 vertices have no texture coordinates, first used in line 10"));
 }
 
@@ -162,7 +157,7 @@ TEST_CASE("flat triangles are dropped and counted, an empty result is an error")
     const BaseMesh mesh = parse(square + "f 1/1 2/2 3/3\nf 1/1 1/1 2/2\nf 1/1 3/3 4/4\nf 1/1 2/2 1/1 2/2\n");
     CHECK(mesh.triangles.size() == 2);
     CHECK(mesh.dropped_degenerate == 3);
-    CHECK_THAT(all_repairs(mesh), Contains("3 triangle(s) of zero area") && Contains("line 11"));
+    CHECK_THAT(testing::joined(mesh.repairs), Contains("3 triangle(s) of zero area") && Contains("line 11"));
     CHECK_THROWS_WITH(parse("v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n"), Contains("no triangle is left"));
     CHECK_THROWS_WITH(parse("v 0 0 0\nv 0.1 0.1 0.7\nv 0.3 0.3 2.1\nf 1 2 3\n"), Contains("no triangle is left"));
     CHECK_THROWS_WITH(parse("v 0 0 0\nv 1e-200 0 0\nv 0 1e-200 0\nf 1 2 3\n"), Contains("smaller than"));
@@ -172,23 +167,23 @@ TEST_CASE("an n-gon that repeats a point in succession uses it once") {
     const BaseMesh mesh = parse(square + "f 1/1 2/2 2/2 3/3 4/4 1/1\n");
     CHECK(mesh.triangles.size() == 2);
     CHECK(signed_area(mesh) == Approx(1));
-    CHECK_THAT(all_repairs(mesh), Contains("name one point twice in a row"));
+    CHECK_THAT(testing::joined(mesh.repairs), Contains("name one point twice in a row"));
 }
 
 TEST_CASE("repeated and turned-over triangles are dropped, two-sided sheets are kept") {
     const BaseMesh repeated = parse(square + "f 1/1 2/2 3/3\nf 2/2 3/3 1/1\n");
     CHECK(repeated.triangles.size() == 1);
     CHECK(repeated.dropped_duplicate == 1);
-    CHECK_THAT(all_repairs(repeated), Contains("repeat an earlier one") && Contains("line 11"));
+    CHECK_THAT(testing::joined(repeated.repairs), Contains("repeat an earlier one") && Contains("line 11"));
     const BaseMesh turned = parse(square + "f 1/1 2/2 3/3\nf 3/3 2/2 1/1\n");
     CHECK(turned.triangles.size() == 1);
-    CHECK_THAT(all_repairs(turned), Contains("opposite winding"));
+    CHECK_THAT(testing::joined(turned.repairs), Contains("opposite winding"));
     CHECK(turned.vertices[0].normal == glm::dvec3(0, 0, 1));
     const BaseMesh sheet = parse(square + "vn 0 0 -1\nf 1/1/1 2/2/1 3/3/1\nf 3/3/2 2/2/2 1/1/2\n");
     CHECK(sheet.triangles.size() == 2);
-    CHECK_THAT(all_repairs(sheet), Contains("more than one normal"));
+    CHECK_THAT(testing::joined(sheet.repairs), Contains("more than one normal"));
     const auto leaning = [&](const std::string& x) {
-        return all_repairs(parse(square + "vn " + x + " 0 1\nf 1/1/1 2/2/1 3/3/1\nf 1/1/2 3/3/2 4/4/2\n"));
+        return testing::joined(parse(square + "vn " + x + " 0 1\nf 1/1/1 2/2/1 3/3/1\nf 1/1/2 3/3/2 4/4/2\n").repairs);
     };
     CHECK_THAT(leaning("2e-6"), !Contains("more than one normal"));  // as six decimals round one
     CHECK_THAT(leaning("1e-3"), Contains("2 point(s) have more than one normal"));
@@ -197,12 +192,13 @@ TEST_CASE("repeated and turned-over triangles are dropped, two-sided sheets are 
 TEST_CASE("T-junctions, non-manifold edges and changes of winding are reported") {
     const BaseMesh junction =
         parse("v 0 0 0\nv 2 0 0\nv 1 2 0\nv 1 0 0\nv 0 -2 0\nv 2 -2 0\nf 1 2 3\nf 1 5 4\nf 4 5 6\nf 4 6 2\n");
-    CHECK_THAT(all_repairs(junction), Contains("1 border edge(s) contain another vertex"));
+    CHECK_THAT(testing::joined(junction.repairs), Contains("1 border edge(s) contain another vertex"));
     const BaseMesh book = parse("v 0 0 0\nv 0 0 1\nv 1 0 0\nv -1 1 0\nv -1 -1 0\nf 1 2 3\nf 1 2 4\nf 1 2 5\n");
-    CHECK_THAT(all_repairs(book), Contains("1 edge(s) belong to more than two triangles"));
+    CHECK_THAT(testing::joined(book.repairs), Contains("1 edge(s) belong to more than two triangles"));
     const BaseMesh twisted = parse(square + "f 1/1 2/2 3/3\nf 1/1 4/4 3/3\n");
-    CHECK_THAT(all_repairs(twisted), Contains("The winding changes across 1 edge(s)"));
-    CHECK_THAT(all_repairs(twisted), Contains("At 2 point(s) the normals of the surrounding triangles cancel"));
+    CHECK_THAT(testing::joined(twisted.repairs), Contains("The winding changes across 1 edge(s)"));
+    CHECK_THAT(testing::joined(twisted.repairs),
+               Contains("At 2 point(s) the normals of the surrounding triangles cancel"));
     require_complete(twisted);
 }
 
@@ -214,9 +210,10 @@ TEST_CASE("given normals are normalised, and computed if their length is zero") 
     CHECK(mesh.vertices[1].normal == glm::dvec3(0, 0, 1));
     CHECK(mesh.vertices[2].normal.x == Approx(std::sqrt(1.0 / 3)));
     CHECK(mesh.vertices[3].normal.y == Approx(0.6));
-    CHECK_THAT(all_repairs(mesh),
+    CHECK_THAT(testing::joined(mesh.repairs),
                Contains("1 vertex normal(s) have zero length") && Contains("3 vertex normal(s) are not"));
-    CHECK_THAT(all_repairs(parse(square + "vn 0 0 -1\nf 1/1/2 2/2/2 3/3/2\n")), Contains("against their winding"));
+    CHECK_THAT(testing::joined(parse(square + "vn 0 0 -1\nf 1/1/2 2/2/2 3/3/2\n").repairs),
+               Contains("against their winding"));
 }
 
 TEST_CASE(
@@ -247,7 +244,7 @@ TEST_CASE("a mirrored texture flips the handedness, mixed points have no tangent
     CHECK(mirrored.vertices[0].tangent == glm::dvec3(-1, 0, 0));
     const BaseMesh mixed =
         parse(square + "v -1 0 0\nv -1 1 0\nf 1/1/1 2/2/1 3/3/1\nf 1/1/1 3/3/1 4/4/1\nf 5/2/1 1/1/1 4/4/1\n");
-    CHECK_THAT(all_repairs(mixed), Contains("mirrored"));
+    CHECK_THAT(testing::joined(mixed.repairs), Contains("mirrored"));
     CHECK(mixed.vertices[0].handedness == 1);
     CHECK(mixed.vertices[0].tangent == glm::dvec3(0));
     require_complete(mixed);
@@ -256,14 +253,15 @@ TEST_CASE("a mirrored texture flips the handedness, mixed points have no tangent
 TEST_CASE("a triangle without area in texture space gives no tangent and a repair") {
     const BaseMesh mesh = parse(square + "v 2 0 0\nf 1/1 2/2 3/3 4/4\nf 2/1 5/1 3/1\n");
     require_complete(mesh);
-    CHECK_THAT(all_repairs(mesh), Contains("1 triangle(s) have no area in texture space"));
+    CHECK_THAT(testing::joined(mesh.repairs), Contains("1 triangle(s) have no area in texture space"));
 }
 
 TEST_CASE("a mesh without any area in texture space gets a projected map") {
     const BaseMesh mesh = parse(square + "f 1/1 2/1 3/1 4/1\n");
     require_complete(mesh);
-    CHECK_THAT(all_repairs(mesh), Contains("No triangle has an area in texture space: the map was projected onto the "
-                                           "mesh's bounding box along z."));
+    CHECK_THAT(testing::joined(mesh.repairs),
+               Contains("No triangle has an area in texture space: the map was projected onto the "
+                        "mesh's bounding box along z."));
     CHECK(mesh.vertices[2].texture == glm::dvec2(1, 1));
     CHECK(mesh.texture_scale.mean_u == 1);
 }
@@ -315,7 +313,7 @@ TEST_CASE("concave polygons are cut inside their outline") {
                 std::reverse(outline.begin() + 1, outline.end());
             INFO(i << reversed);
             const BaseMesh mesh = parse(polygon(outline));
-            CHECK(all_repairs(mesh) == "");
+            CHECK(testing::joined(mesh.repairs) == "");
             CHECK(mesh.triangles.size() == outline.size() - 2);
             CHECK(signed_area(mesh) == Approx(reversed ? -areas[i] : areas[i]));
             for (const BaseVertex& v : mesh.vertices)
@@ -376,13 +374,13 @@ TEST_CASE("outlines that cross themselves or are not planar load with a repair")
           polygon({{0, 1}, {0.59, -0.81}, {-0.95, 0.31}, {0.95, 0.31}, {-0.59, -0.81}})}) {
         const BaseMesh mesh = parse(text);
         require_complete(mesh);
-        CHECK_THAT(all_repairs(mesh), Contains("crosses itself"));
+        CHECK_THAT(testing::joined(mesh.repairs), Contains("crosses itself"));
     }
     const BaseMesh bent =
         parse("v 0 0 0\nv 1 0 1\nv 1 1 0\nv 0 1 1\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n");
     require_complete(bent);
     CHECK(bent.triangles.size() == 2);
-    CHECK_THAT(all_repairs(bent), Contains("not planar"));
+    CHECK_THAT(testing::joined(bent.repairs), Contains("not planar"));
 }
 
 TEST_CASE("files beyond a limit are refused with the limit") {
@@ -409,7 +407,7 @@ TEST_CASE("files beyond a limit are refused with the limit") {
 
 TEST_CASE("unknown keywords are skipped and reported") {
     const BaseMesh mesh = parse("hello\n" + square + "\x01\x02 3\nf 1/1 2/2 3/3\nsurf 0 1 0 1 1 2 3 4\n");
-    CHECK_THAT(all_repairs(mesh),
+    CHECK_THAT(testing::joined(mesh.repairs),
                Contains("3 line(s) begin with an unknown keyword") && Contains("the first is line 1: 'hello'."));
 }
 

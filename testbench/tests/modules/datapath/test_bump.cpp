@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "modules/datapath/bump.h"
-#include "testbench/prove/random_edges/datapath_random.h"
+#include "testbench/common/random.h"
 
 using namespace tessera::datapath;
 using namespace tessera::testing;

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "modules/datapath/displace.h"
-#include "testbench/prove/random_edges/datapath_random.h"
+#include "testbench/common/random.h"
 #include "testbench/tests/modules/datapath/datapath_reference.h"
 
 using namespace tessera::datapath;

@@ -7,7 +7,7 @@
 
 #include "modules/datapath/edge_tests.h"
 #include "modules/datapath/midpoint.h"
-#include "testbench/prove/random_edges/datapath_random.h"
+#include "testbench/common/random.h"
 #include "testbench/tests/modules/datapath/datapath_reference.h"
 
 using namespace tessera::datapath;

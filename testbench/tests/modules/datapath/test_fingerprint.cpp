@@ -4,8 +4,8 @@
 #include "modules/datapath/cull.h"
 #include "modules/datapath/light.h"
 #include "testbench/common/hash.h"
+#include "testbench/common/random.h"
 #include "testbench/prove/random_edges/datapath_edge.h"
-#include "testbench/prove/random_edges/datapath_random.h"
 #include "testbench/prove/random_edges/datapath_random_tables.h"
 
 /// Integer arithmetic only, so every compiler must give the same bits at every optimisation level.

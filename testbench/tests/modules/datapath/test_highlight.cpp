@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "modules/datapath/edge_tests.h"
-#include "testbench/prove/random_edges/datapath_random.h"
+#include "testbench/common/random.h"
 
 /// The Highlight Test: one of three normals in the highlight, and a difference above its threshold.
 using namespace tessera::datapath;

@@ -2,7 +2,7 @@
 #include <cstdint>
 
 #include "modules/datapath/map_entry.h"
-#include "testbench/prove/random_edges/datapath_random.h"
+#include "testbench/common/random.h"
 
 using namespace tessera::datapath;
 using namespace tessera::testing;

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "modules/datapath/midpoint.h"
-#include "testbench/prove/random_edges/datapath_random.h"
+#include "testbench/common/random.h"
 
 using namespace tessera::datapath;
 using namespace tessera::testing;

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "modules/datapath/pack_triangle.h"
-#include "testbench/prove/random_edges/datapath_random.h"
+#include "testbench/common/random.h"
 
 using namespace tessera::datapath;
 using namespace tessera::testing;

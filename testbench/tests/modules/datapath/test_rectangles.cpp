@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "testbench/common/random.h"
 #include "testbench/prove/random_edges/datapath_edge.h"
-#include "testbench/prove/random_edges/datapath_random.h"
 
 using namespace tessera::datapath;
 using namespace tessera::testing;

@@ -4,8 +4,8 @@
 #include <utility>
 #include <vector>
 
+#include "testbench/common/random.h"
 #include "testbench/prove/random_edges/datapath_edge.h"
-#include "testbench/prove/random_edges/datapath_random.h"
 #include "testbench/prove/random_edges/direct_edge.h"
 #include "testbench/prove/random_edges/edge_trial.h"
 
@@ -13,7 +13,6 @@
 /// results are compared with the definitions, too, since a test that always says no is symmetric as well.
 using namespace tessera;
 using namespace tessera::datapath;
-using tessera::testing::Random;
 
 namespace {
 

@@ -8,7 +8,7 @@
 #include "modules/datapath/format.h"
 #include "modules/datapath/midpoint.h"
 #include "modules/datapath/transform.h"
-#include "testbench/prove/random_edges/datapath_random.h"
+#include "testbench/common/random.h"
 
 /// Checks rounding, saturation and widths against SystemC's own fixed-point and wide integer types.
 using namespace tessera::datapath;

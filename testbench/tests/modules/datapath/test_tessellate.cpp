@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "testbench/common/random.h"
 #include "testbench/prove/random_edges/datapath_edge.h"
-#include "testbench/prove/random_edges/datapath_random.h"
 
 using namespace tessera::datapath;
 using namespace tessera::testing;

@@ -8,7 +8,7 @@
 
 #include "modules/datapath/midpoint.h"
 #include "modules/datapath/triangulate.h"
-#include "testbench/prove/random_edges/datapath_random.h"
+#include "testbench/common/random.h"
 
 using namespace tessera::datapath;
 using namespace tessera::testing;

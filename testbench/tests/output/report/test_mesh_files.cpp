@@ -22,6 +22,7 @@
 #include "testbench/tests/support/emitted_mesh_maker.h"
 #include "testbench/tests/support/refusals.h"
 #include "testbench/tests/support/test_folder.h"
+#include "testbench/tests/support/text.h"
 
 namespace tessera {
 namespace {
@@ -89,12 +90,6 @@ T take(const std::string& bytes, std::size_t& at) {
     return value;
 }
 
-std::size_t number_after(const std::string& text, const std::string& words) {
-    const std::size_t at = text.find(words);
-    REQUIRE(at != std::string::npos);
-    return std::stoul(text.substr(at + words.size()));
-}
-
 using VertexKey = std::array<std::int64_t, 11>;
 VertexKey key(const EmittedTriangle::Corner& c) {
     return {c.position.x,         c.position.y,  c.position.z,         c.displaced.x,
@@ -123,7 +118,8 @@ TEST_CASE("a PLY file read back holds the mesh, in model units") {
     const std::string header = bytes.substr(0, bytes.find(end) + end.size());
     CHECK(header.find("ply\nformat binary_little_endian 1.0\n") == 0);
     CHECK(header.find("comment split_by: tests that split the parent: 0 none") != std::string::npos);
-    const std::size_t vertices = number_after(header, "element vertex "), faces = number_after(header, "element face ");
+    const std::size_t vertices = testing::number_after(header, "element vertex "),
+                      faces = testing::number_after(header, "element face ");
     CHECK(bytes.size() == header.size() + 52 * vertices + 20 * faces);
     CHECK(vertices == distinct_vertices(sample.mesh));
 

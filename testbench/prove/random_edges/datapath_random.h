@@ -1,8 +1,0 @@
-#pragma once
-#include "testbench/common/random.h"
-
-namespace tessera::testing {
-
-using tessera::Random;
-
-}  // namespace tessera::testing
