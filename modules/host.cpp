@@ -4,7 +4,7 @@
 
 namespace tessera {
 
-Host::Host(const sc_core::sc_module_name& name, Pipeline& machine, const std::vector<datapath::Triangle>& triangles,
+Host::Host(const sc_core::sc_module_name& name, Machine& machine, const std::vector<datapath::Triangle>& triangles,
            FillTables fill_tables, std::size_t first, std::size_t step)
     : sc_module(name),
       machine_(machine),

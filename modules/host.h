@@ -6,14 +6,14 @@
 #include <systemc>
 #include <vector>
 
-#include "modules/pipeline.h"
+#include "modules/machine.h"
 
 namespace tessera {
 
 /// Writes bytes to an address of the machine's memory.
 using TableWriter = std::function<void(std::uint64_t address, const unsigned char* bytes, std::size_t count)>;
 
-/// The host CPU (paper figure 7): fills the three tables before simulation starts (Pipeline::write_table), then sends
+/// The host CPU (paper figure 7): fills the three tables before simulation starts (Machine::write_table), then sends
 /// base triangles, one after another, to Get Triangle.
 /// With n machines each has its own host, which sends every n-th base triangle.
 /// Get Triangle blocks it while the Triangle Queue is at its watermark. In timed mode it offers the next triangle in
@@ -31,7 +31,7 @@ class Host : public sc_core::sc_module, public CycleProcess {
 
     /// Sends triangles[first], triangles[first + step], ... `machine` and `triangles` must outlive the host. It is
     /// bound to the machine by bind().
-    Host(const sc_core::sc_module_name& name, Pipeline& machine, const std::vector<datapath::Triangle>& triangles,
+    Host(const sc_core::sc_module_name& name, Machine& machine, const std::vector<datapath::Triangle>& triangles,
          FillTables fill_tables, std::size_t first = 0, std::size_t step = 1);
     ~Host() override;
 
@@ -54,7 +54,7 @@ class Host : public sc_core::sc_module, public CycleProcess {
     void sent_one();
     void check_tables();
 
-    Pipeline& machine_;
+    Machine& machine_;
     const std::vector<datapath::Triangle>& triangles_;
     FillTables fill_tables_;
     std::size_t first_, step_;

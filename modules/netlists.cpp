@@ -2,12 +2,12 @@
 // and one for each wire that reaches it.
 #include <string>
 
-#include "modules/pipeline.h"
+#include "modules/machine.h"
 #include "modules/units/edge_tests/collect_tests.h"
 #include "modules/units/edge_tests/sequence_tests.h"
-#include "modules/units/families/pass_or_tessellate.h"
-#include "modules/units/families/sequence_tests.h"
-#include "modules/units/families/tessellation.h"
+#include "modules/units/family/pass_or_tessellate.h"
+#include "modules/units/family/sequence_tests.h"
+#include "modules/units/family/tessellation.h"
 #include "modules/units/pass_or_tessellate.h"
 
 namespace tessera {
@@ -104,7 +104,7 @@ Netlist TessellationTests::units_of(const UnitContext& context, UnitFactory& fac
 }
 
 /// From Get Triangle to Transform.
-void Pipeline::add_geometry(Netlist& net) {
+void Machine::add_geometry(Netlist& net) {
     auto& get = net.make<GetTriangle>("get_triangle");
     auto& calculate = net.make<CalculateNewP>("calculate_new_p");
     net.wire(get.to_calculate_new_p, calculate.from_get_triangle);
@@ -121,14 +121,14 @@ void Pipeline::add_geometry(Netlist& net) {
 
 /// Joins a triangle with what the geometry branch makes of it.
 template <class AnyUnit>
-AnyUnit& Pipeline::add_join(Netlist& net, const char* name) {
+AnyUnit& Machine::add_join(Netlist& net, const char* name) {
     auto& joining = net.make<AnyUnit>(name);
     net.wire(net.the<GetTriangle>().to_join, joining.from_get_triangle);
     net.wire(net.the<Transform>().to_join, joining.from_transform);
     return joining;
 }
 
-void Pipeline::add_tests(Netlist& net) {
+void Machine::add_tests(Netlist& net) {
     const UnitContext& context = net.context();
     tessellation_tests.init(context.design.tests_units, [&](const char* name, std::size_t number) {
         const auto k = static_cast<unsigned>(number);
@@ -148,7 +148,7 @@ void Pipeline::add_tests(Netlist& net) {
 }
 
 /// From the units that send a triangle on, or its children back.
-void Pipeline::add_ends(Netlist& net, StreamOutput<datapath::Triangle>& to_triangle_queue, DecidingUnit& deciding) {
+void Machine::add_ends(Netlist& net, StreamOutput<datapath::Triangle>& to_triangle_queue, DecidingUnit& deciding) {
     auto& get = net.the<GetTriangle>();
     auto& queue = net.make<TriangleQueue>("triangle_queue");
     net.wire(to_triangle_queue, queue.from_tessellation);
@@ -159,7 +159,7 @@ void Pipeline::add_ends(Netlist& net, StreamOutput<datapath::Triangle>& to_trian
     net.wire(deciding.to_lighting, light.from_pass_or_tessellate);
 }
 
-Netlist Pipeline::triangle_design(Netlist net) {
+Netlist Machine::triangle_design(Netlist net) {
     add_geometry(net);
     add_tests(net);
     auto& decide = add_join<PassOrTessellate>(net, "pass_or_tessellate");
@@ -175,7 +175,7 @@ Netlist Pipeline::triangle_design(Netlist net) {
     return net;
 }
 
-Netlist Pipeline::family_design(Netlist net) {
+Netlist Machine::family_design(Netlist net) {
     add_geometry(net);
     auto& tessellate = add_join<FamilyTessellation>(net, "tessellation");
     add_tests(net);

@@ -31,7 +31,7 @@ void require(const char* instance, const char* member, std::uint64_t value, std:
         refuse(instance, member, value, ": must be " + std::to_string(least) + " to " + std::to_string(most));
 }
 
-/// Checks the design before anything is built from it; Pipeline checks the machine's.
+/// Checks the design before anything is built from it; Machine checks the machine's.
 const DeviceDesign& checked(const DeviceDesign& design, const datapath::Registers& initial, const char* instance) {
     const std::uint64_t most_texels = std::uint64_t{1}
                                       << (initial.formats.texture.bits - 1 - initial.formats.texture.fraction);
@@ -56,20 +56,20 @@ Device::Device(const sc_core::sc_module_name& name, const datapath::Registers& i
     : sc_module(name),
       design_(checked(design, initial, this->name())),
       live_(for_largest_map(initial, design.largest_map)),
-      pipeline_("machine", live_, design.machine, factory),
-      streams_("streams", pipeline_.clock, design.machine, design.triangles_ahead, design.finished_triangles),
+      machine_("machine", live_, design.machine, factory),
+      streams_("streams", machine_.clock, design.machine, design.triangles_ahead, design.finished_triangles),
       file_(initial, design.largest_map),
       reading_("reading", bus, design.burst_bytes, design.machine.transport == Transport::blocking,
-               pipeline_.answer_limit()),
+               machine_.answer_limit()),
       writing_("writing", bus, design.burst_bytes, design.machine.transport == Transport::blocking,
-               pipeline_.answer_limit()),
+               machine_.answer_limit()),
       burst_(design.burst_bytes),
       most_waiting_(std::max<std::uint64_t>(design.machine.queue.capacity, design.machine.queue.off_chip_triangles)) {
     registers.register_b_transport(this, &Device::b_transport);
     registers.register_transport_dbg(this, &Device::transport_dbg);
-    streams_.to_get_triangle.bind(pipeline_.get_triangle.from_host);
-    pipeline_.lighting.to_rasteriser.bind(streams_.from_lighting);
-    pipeline_.pass_or_tessellate.decided.bind(*this);
+    streams_.to_get_triangle.bind(machine_.get_triangle.from_host);
+    machine_.lighting.to_rasteriser.bind(streams_.from_lighting);
+    machine_.pass_or_tessellate.decided.bind(*this);
     SC_HAS_PROCESS(Device);
     SC_THREAD(run_frames);
     SC_THREAD(write_records);
@@ -90,9 +90,9 @@ void Device::start(const sc_core::sc_time& delay) {
         return;
     }
     live_ = machine;
-    pipeline_.tables_changed();
-    pipeline_.begin_frame();
-    finished_before_ = pipeline_.pass_or_tessellate.counts().finished;
+    machine_.tables_changed();
+    machine_.begin_frame();
+    finished_before_ = machine_.pass_or_tessellate.counts().finished;
     triangles_sent_ = write_index_ = read_index_ = 0;
     ring_place_ = 0;
     stopped_ = false;
@@ -108,7 +108,7 @@ void Device::run_frames() {
         if (fetch_tables())
             send_triangles();
         reading_.synchronise();
-        pipeline_.end_frame();
+        machine_.end_frame();
         wait_until_empty();
         check_tables();
         end_frame();
@@ -118,10 +118,10 @@ void Device::run_frames() {
 /// Returns false if the frame must stop.
 bool Device::fetch_tables() {
     const datapath::Formats& f = live_.formats;
-    return fetch(0, pipeline_.displacement_map, offset::displacement_map_address, live_.displacement_map,
+    return fetch(0, machine_.displacement_map, offset::displacement_map_address, live_.displacement_map,
                  f.displacement.bits) &&
-           fetch(1, pipeline_.normal_map, offset::normal_map_address, live_.normal_map, 3 * f.normal.bits) &&
-           fetch(2, pipeline_.height_table, offset::summed_height_table_address, live_.height_table,
+           fetch(1, machine_.normal_map, offset::normal_map_address, live_.normal_map, 3 * f.normal.bits) &&
+           fetch(2, machine_.height_table, offset::summed_height_table_address, live_.height_table,
                  datapath::height_entry_bits(f));
 }
 
@@ -143,11 +143,11 @@ bool Device::fetch(unsigned number, const TableMemory& table, std::uint32_t sour
         }
         for (std::uint64_t k = 0; k < length; ++k)
             burst_[k] &= static_cast<unsigned char>(mask >> 8 * ((done + k) % layout.entry_bytes));
-        if (!pipeline_.write_table(table, layout.base + done, burst_.data(), length)) {
+        if (!machine_.write_table(table, layout.base + done, burst_.data(), length)) {
             stop(DeviceError::table_memory, address);
             return false;
         }
-        if (pipeline_.reads_tables_elsewhere())
+        if (machine_.reads_tables_elsewhere())
             fetched.bytes.insert(fetched.bytes.end(), burst_.begin(),
                                  burst_.begin() + static_cast<std::ptrdiff_t>(length));
     }
@@ -158,7 +158,7 @@ bool Device::fetch(unsigned number, const TableMemory& table, std::uint32_t sour
 void Device::check_tables() {
     for (const Fetched& fetched : fetched_)
         if (!fetched.bytes.empty() &&
-            !pipeline_.holds_table(*fetched.table, fetched.base, fetched.bytes.data(), fetched.bytes.size()))
+            !machine_.holds_table(*fetched.table, fetched.base, fetched.bytes.data(), fetched.bytes.size()))
             stop(DeviceError::table_memory, 0);
 }
 
@@ -183,12 +183,12 @@ void Device::send_triangles() {
 }
 
 void Device::wait_until_empty() {
-    while (!(pipeline_.idle() && streams_.idle() && !record_under_way_)) {
-        if (pipeline_.clock.halted()) {
+    while (!(machine_.idle() && streams_.idle() && !record_under_way_)) {
+        if (machine_.clock.halted()) {
             stop(DeviceError::machine_stopped, 0);
             return;
         }
-        wait(pipeline_.drained() | pipeline_.clock.quiet() | written_);
+        wait(machine_.drained() | machine_.clock.quiet() | written_);
     }
 }
 
@@ -222,7 +222,7 @@ void Device::stop(DeviceError error, std::uint64_t address) {
 void Device::write(const datapath::TrianglePass&) {
     if (stopped_)
         return;
-    const Pipeline& p = pipeline_;
+    const Machine& p = machine_;
     std::uint64_t waiting = p.triangle_queue.waiting();
     if (design_.machine.transport == Transport::non_blocking)
         waiting +=
@@ -285,7 +285,7 @@ void Device::reset_registers() {
     status_ = 0;
     pending_interrupts_ = 0;
     triangles_sent_ = write_index_ = read_index_ = 0;
-    finished_before_ = pipeline_.pass_or_tessellate.counts().finished;
+    finished_before_ = machine_.pass_or_tessellate.counts().finished;
     interrupt_changed_.notify(sc_core::SC_ZERO_TIME);
 }
 

@@ -10,7 +10,7 @@
 #include "modules/device/dma_channel.h"
 #include "modules/device/frame_streams.h"
 #include "modules/device/register_file.h"
-#include "modules/pipeline.h"
+#include "modules/machine.h"
 
 namespace tessera {
 
@@ -24,7 +24,7 @@ struct DeviceDesign {
     unsigned finished_triangles = 8;  ///< finished triangles that wait to be written
 };
 
-/// The machine (pipeline.h) as a device on a bus: registers, DMA, interrupt.
+/// The machine (machine.h) as a device on a bus: registers, DMA, interrupt.
 ///
 /// In:        `registers`: TLM-2.0 base protocol, loosely timed (b_transport) and approximately timed (nb_transport).
 ///            Words of 32 bits, little endian, at the offsets of REGISTERS.md. An access is of one or more whole words,
@@ -39,7 +39,7 @@ struct DeviceDesign {
 ///            reading and one writing. `interrupt`: optional; level.
 /// Frame:     accesses change a copy of the machine's registers. start checks it as a whole and passes it on: the
 ///            machine never sees part of a change, nor values that its arithmetic excludes. Then the device copies the
-///            tables selected by `fetch` to the memories that the units read (Pipeline::write_table; entry bits beyond
+///            tables selected by `fetch` to the memories that the units read (Machine::write_table; entry bits beyond
 ///            the format are dropped), sends the base triangles to the machine, and writes each finished triangle that
 ///            is not culled to the ring (records.h). done and interrupt follow when all are written. While the ring is
 ///            full (write index - read index = size) the machine is held back. Each frame resets indices and counters.
@@ -65,14 +65,14 @@ class Device : public sc_core::sc_module, private tlm::tlm_analysis_if<datapath:
     sc_core::sc_port<sc_core::sc_signal_inout_if<bool>, 1, sc_core::SC_ZERO_OR_MORE_BOUND> interrupt{"interrupt"};
     sc_core::sc_port<sc_core::sc_signal_in_if<bool>, 1, sc_core::SC_ZERO_OR_MORE_BOUND> reset{"reset"};
 
-    /// initial: the formats, and the reset values of the machine's registers. factory: see Pipeline.
+    /// initial: the formats, and the reset values of the machine's registers. factory: see Machine.
     /// SC_ERROR if the design or the formats cannot work.
     Device(const sc_core::sc_module_name& name, const datapath::Registers& initial, const DeviceDesign& design,
            UnitFactory* factory = nullptr);
     ~Device() override;
 
     /// For statistics, and to observe the units. Its registers change at the start of a frame.
-    Pipeline& pipeline() { return pipeline_; }
+    Machine& machine() { return machine_; }
     bool busy() const { return (status_ & status_busy) != 0; }
 
   private:
@@ -116,7 +116,7 @@ class Device : public sc_core::sc_module, private tlm::tlm_analysis_if<datapath:
 
     DeviceDesign design_;
     datapath::Registers live_;  // the machine's registers: those of the frame under way
-    Pipeline pipeline_;
+    Machine machine_;
     FrameStreams streams_;
     RegisterFile file_;
     DmaChannel reading_;

@@ -30,7 +30,7 @@ void Device::b_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& de
     payload.set_response_status(access(payload, delay));
     const bool moved = payload.is_response_ok() && payload.get_command() != tlm::TLM_IGNORE_COMMAND;
     const unsigned words = moved ? payload.get_data_length() / 4 : 1;
-    delay += pipeline_.clock.period() * (words * design_.register_cycles);
+    delay += machine_.clock.period() * (words * design_.register_cycles);
 }
 
 tlm::tlm_response_status Device::access(tlm::tlm_generic_payload& payload, const sc_core::sc_time& delay) {
@@ -90,7 +90,7 @@ std::uint32_t Device::read(std::uint32_t offset) const {
         case offset::error_address + 4: return static_cast<std::uint32_t>(failure_.address >> 32);
         case offset::triangles_sent: return triangles_sent_;
         case offset::triangles_finished:
-            return static_cast<std::uint32_t>(pipeline_.pass_or_tessellate.counts().finished - finished_before_);
+            return static_cast<std::uint32_t>(machine_.pass_or_tessellate.counts().finished - finished_before_);
         case offset::ring_write_index: return write_index_;
         case offset::ring_read_index: return read_index_;
         default: return file_.word(offset);
@@ -144,7 +144,7 @@ unsigned Device::transport_dbg(tlm::tlm_generic_payload& payload) {
 
 Device::Failure Device::check(const datapath::Registers& machine) const {
     const auto at = [&](DeviceError error, const char* name) { return Failure{error, file_.offset_of(name)}; };
-    if (pipeline_.clock.halted())
+    if (machine_.clock.halted())
         return {DeviceError::machine_stopped, 0};
     if (machine.map.width == 0 || machine.map.width > design_.largest_map.width)
         return at(DeviceError::bad_map_size, "map.width");

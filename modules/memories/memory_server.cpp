@@ -146,7 +146,7 @@ unsigned MemoryServer::host_transport_dbg(tlm::tlm_generic_payload& payload) {
     if (no_reader_ && payload.is_write())
         SC_REPORT_ERROR("tessera/memory",
                         (std::string(name()) + ": no unit reads this memory, since a UnitFactory has "
-                                               "joined their ports elsewhere: write by Pipeline::write_table()")
+                                               "joined their ports elsewhere: write by Machine::write_table()")
                             .c_str());
     MemoryRequest request{
         payload.get_command(), 1, payload.get_data_length(), {payload.get_address()}, payload.get_data_ptr()};

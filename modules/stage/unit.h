@@ -51,7 +51,7 @@ class Unit : public CycleProcess, public sc_core::sc_module {
 
     CycleScheduler& clock_;
     Activity activity_;
-    Area area_;  // of a table set by Pipeline, else in the constructor
+    Area area_;  // of a table set by Machine, else in the constructor
     datapath::Saturations saturations_;
 };
 

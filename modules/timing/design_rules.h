@@ -30,7 +30,7 @@ inline std::vector<DesignSetting> use_lanes(const DesignOptions&, const Timing&)
     return {{"work", "\"family\""}, {"test_order", "\"cheap_first\""}};
 }
 
-/// A job file and Pipeline are held to the same.
+/// A job file and Machine are held to the same.
 inline const std::array design_rules{
     DesignRule{"tests_units", "a design has 1 Tessellation Tests unit, or 3, one for each edge",
                [](const DesignOptions& d, const Timing&) { return d.tests_units != 2; },

@@ -115,7 +115,7 @@ void GetTriangle::take_from_host() {
         SC_REPORT_ERROR(
             "tessera/get_triangle",
             (std::string(name()) +
-             ": a triangle outside a frame: call Pipeline::begin_frame() before the first triangle of a "
+             ": a triangle outside a frame: call Machine::begin_frame() before the first triangle of a "
              "frame and end_frame() after its last, so that drained() can tell when all have left the machine")
                 .c_str());
     ++host_triangles_;

@@ -42,7 +42,7 @@ class GetTriangle : public Unit {
 
     GetTriangle(const sc_core::sc_module_name& name, const UnitContext& context);
 
-    /// A source has begun a frame (Pipeline::begin_frame). A triangle before is an SC_ERROR.
+    /// A source has begun a frame (Machine::begin_frame). A triangle before is an SC_ERROR.
     void begin_frame() { frame_begun_ = true; }
 
     std::uint64_t host_triangles() const { return host_triangles_; }

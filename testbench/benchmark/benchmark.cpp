@@ -75,7 +75,7 @@ void bare_datapath(benchmark::State& state, BareRecursion& bare) {
 
 /// Runs one frame in the mode that the simulation was set up with.
 void one_frame(benchmark::State& state, Simulation& simulation) {
-    const auto edges_so_far = [&] { return simulation.pipeline.edges_tested(); };
+    const auto edges_so_far = [&] { return simulation.machine.edges_tested(); };
     const std::uint64_t before = edges_so_far();
     const bool timed = simulation.setup.design.transport == Transport::non_blocking;
     std::uint64_t cycles = 0;
@@ -83,7 +83,7 @@ void one_frame(benchmark::State& state, Simulation& simulation) {
         simulation.monitor.mesh.triangles.clear();
         simulation.host.send_again();
         // Between two frames the other simulations advance simulated time: a timed frame begins at the present cycle.
-        const std::uint64_t first_cycle = simulation.last_machine().pipeline.clock.cycle();
+        const std::uint64_t first_cycle = simulation.last_machine().machine.clock.cycle();
         if (!simulation.run().empty())
             state.SkipWithError("the simulation did not drain");
         if (timed)
@@ -119,7 +119,7 @@ class Platform {
         return result_ == TESSERA_OK;
     }
     std::uint32_t triangles() const { return triangles_; }
-    std::uint64_t edges_tested() { return device_.pipeline().edges_tested(); }
+    std::uint64_t edges_tested() { return device_.machine().edges_tested(); }
 
   private:
     static constexpr std::size_t triangles_at = std::size_t{32} << 20, ring_at = std::size_t{33} << 20;

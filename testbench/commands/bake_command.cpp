@@ -4,11 +4,11 @@
 
 #include <algorithm>
 
+#include "testbench/bake/bake.h"
 #include "testbench/commands/progress.h"
 #include "testbench/commands/run_files.h"
 #include "testbench/common/atomic_file.h"
 #include "testbench/common/atomic_set.h"
-#include "testbench/input/surface/bake.h"
 #include "testbench/job/dump_job.h"
 #include "testbench/job/job_paths.h"
 #include "testbench/job/read_job.h"

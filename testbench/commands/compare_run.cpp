@@ -2,10 +2,10 @@
 
 #include <fmt/core.h>
 
-#include "testbench/check/surface_error/measure_error.h"
 #include "testbench/commands/progress.h"
 #include "testbench/common/atomic_file.h"
 #include "testbench/common/atomic_set.h"
+#include "testbench/compare/measure_error.h"
 #include "testbench/machine/inputs.h"
 #include "testbench/output/report/error_report.h"
 #include "testbench/output/report/figures_text.h"

@@ -7,9 +7,9 @@
 #include "testbench/commands/summary.h"
 #include "testbench/common/atomic_file.h"
 #include "testbench/common/atomic_set.h"
-#include "testbench/explore/thresholds/rank_curve.h"
 #include "testbench/job/read_job.h"
 #include "testbench/machine/inputs.h"
+#include "testbench/tune/rank_curve.h"
 
 namespace tessera {
 

@@ -4,17 +4,17 @@
 
 #include <algorithm>
 
-#include "testbench/check/surface_error/measure_error.h"
 #include "testbench/commands/progress.h"
 #include "testbench/commands/run_files.h"
 #include "testbench/common/atomic_file.h"
 #include "testbench/common/atomic_set.h"
+#include "testbench/compare/measure_error.h"
 #include "testbench/input/map/map_file.h"
 #include "testbench/job/validate_job.h"
 #include "testbench/machine/inputs.h"
-#include "testbench/output/picture/error_range.h"
-#include "testbench/output/picture/png_writer.h"
-#include "testbench/output/picture/view_picture.h"
+#include "testbench/render/error_range.h"
+#include "testbench/render/png_writer.h"
+#include "testbench/render/view_picture.h"
 #include "testbench/run_folder/read_run.h"
 
 namespace tessera {

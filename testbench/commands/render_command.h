@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "testbench/common/error.h"
-#include "testbench/output/picture/picture_options.h"
-#include "testbench/output/picture/picture_view.h"
+#include "testbench/render/picture_options.h"
+#include "testbench/render/picture_view.h"
 
 namespace tessera {
 

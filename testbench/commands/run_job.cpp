@@ -14,7 +14,6 @@
 #include "testbench/check/conformance/narrow_formats.h"
 #include "testbench/check/conformance/scoreboard.h"
 #include "testbench/check/conformance/texel_borders.h"
-#include "testbench/check/surface_error/bound_check.h"
 #include "testbench/check/transport/conservation.h"
 #include "testbench/check/transport/read_checked_units.h"
 #include "testbench/commands/progress.h"
@@ -25,6 +24,7 @@
 #include "testbench/common/atomic_set.h"
 #include "testbench/common/in_background.h"
 #include "testbench/common/parallel.h"
+#include "testbench/compare/bound_check.h"
 #include "testbench/job/dump_job.h"
 #include "testbench/job/read_job.h"
 #include "testbench/machine/design_remarks.h"
@@ -32,8 +32,6 @@
 #include "testbench/machine/inputs.h"
 #include "testbench/machine/simulation.h"
 #include "testbench/machine/totals.h"
-#include "testbench/output/picture/png_writer.h"
-#include "testbench/output/picture/view_picture.h"
 #include "testbench/output/report/conformance_report.h"
 #include "testbench/output/report/indexed_mesh.h"
 #include "testbench/output/report/obj_writer.h"
@@ -41,6 +39,8 @@
 #include "testbench/output/report/statistics.h"
 #include "testbench/output/report/timing_report.h"
 #include "testbench/output/trace/traces.h"
+#include "testbench/render/png_writer.h"
+#include "testbench/render/view_picture.h"
 
 namespace tessera {
 
@@ -116,7 +116,7 @@ void write_reports(const std::filesystem::path& folder, const Job& job, const Ma
     write_file(folder / "report.txt", report_text(checks, figures));
     if (job.mode == Mode::timed)
         write_file(folder / "queue_levels.csv",
-                   queue_levels_csv(simulation.last_machine().pipeline.triangle_queue.history()));
+                   queue_levels_csv(simulation.last_machine().machine.triangle_queue.history()));
 }
 
 /// Name and window of the waveforms; writes trace.fst if requested.
@@ -188,8 +188,8 @@ Ending run_once(const Job& asked, const Command& command, const std::string& nam
         simulation.observe_decisions(*passes);
     }
     TexelBorders borders(setup.registers.formats);
-    for (const auto& machine : simulation.machines)
-        machine->pipeline.pass_or_tessellate.decided.bind(borders);
+    for (const auto& hosted : simulation.machines)
+        hosted->machine.pass_or_tessellate.decided.bind(borders);
     simulation.monitor.on_progress([&](std::size_t triangles) {
         progress.show(fmt::format("simulating, {} triangles", triangles),
                       0.6 * static_cast<double>(simulation.sent()) / static_cast<double>(setup.base_triangles.size()));
@@ -198,7 +198,7 @@ Ending run_once(const Job& asked, const Command& command, const std::string& nam
     AtomicSet files;
     std::optional<Traces> traces;
     if (job.output.vcd) {
-        const std::vector<const Unit*> units = units_to_trace(job.output.trace_units, simulation.pipeline);
+        const std::vector<const Unit*> units = units_to_trace(job.output.trace_units, simulation.machine);
         files.make_folder(folder, "output.folder");
         traces.emplace(job, folder, simulation, units);
     }

@@ -159,7 +159,7 @@ std::string timing_rows(const Simulation& simulation) {
                                   count(simulation.cycles()), per(totals.counts.finished), per(totals.counts.passes),
                                   per(totals.counts.edges_tested),
                                   static_cast<double>(simulation.cycles()) * period * 1e3, 1e-6 / period));
-    text += row("bottleneck", bottleneck_text(simulation.last_machine().pipeline, simulation.cycles()));
+    text += row("bottleneck", bottleneck_text(simulation.last_machine().machine, simulation.cycles()));
     const UnitArea area = total_area(area_of(simulation));
     text +=
         row("hardware",
@@ -170,15 +170,15 @@ std::string timing_rows(const Simulation& simulation) {
                         simulation.setup.design.queue.capacity == 0 ? "; the unbounded queue is not counted" : ""));
     std::uint64_t fetched = 0;
     std::string rates;
-    for (std::size_t k = 0; k < simulation.pipeline.caches().size(); ++k) {
+    for (std::size_t k = 0; k < simulation.machine.caches().size(); ++k) {
         std::uint64_t hits = 0, read = 0;
-        for (const auto& machine : simulation.machines) {
-            const TableCache& cache = *machine->pipeline.caches()[k];
+        for (const auto& hosted : simulation.machines) {
+            const TableCache& cache = *hosted->machine.caches()[k];
             fetched += cache.bytes_fetched();
             hits += cache.hits();
             read += cache.entries_read();
         }
-        rates += fmt::format(", {} {:.1f} %", simulation.pipeline.caches()[k]->basename(), percent(hits, read));
+        rates += fmt::format(", {} {:.1f} %", simulation.machine.caches()[k]->basename(), percent(hits, read));
     }
     if (!rates.empty())
         text +=

@@ -15,9 +15,6 @@
 #include "testbench/commands/summary.h"
 #include "testbench/common/atomic_file.h"
 #include "testbench/common/atomic_set.h"
-#include "testbench/explore/thresholds/rank_search.h"
-#include "testbench/explore/thresholds/tune.h"
-#include "testbench/explore/thresholds/tune_report.h"
 #include "testbench/job/dump_job.h"
 #include "testbench/job/job_choices.h"
 #include "testbench/job/job_paths.h"
@@ -26,6 +23,9 @@
 #include "testbench/machine/inputs.h"
 #include "testbench/machine/simulation.h"
 #include "testbench/setup/height_tests/height_test_host.h"
+#include "testbench/tune/rank_search.h"
+#include "testbench/tune/tune.h"
+#include "testbench/tune/tune_report.h"
 
 namespace tessera {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "testbench/common/error.h"
-#include "testbench/explore/thresholds/threshold_search.h"
+#include "testbench/tune/threshold_search.h"
 
 namespace tessera {
 

@@ -130,7 +130,7 @@ void check_hardware(const Job::Hardware& hardware, Faults& faults) {
                   name_of(hardware.height_test));
 }
 
-/// What Pipeline refuses as well.
+/// What Machine refuses as well.
 void check_design(const Job& job, Faults& faults) {
     const auto key_of = [](const std::string& member) -> const Key& {
         const std::string leaf = DesignName(member).key;

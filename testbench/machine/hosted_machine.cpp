@@ -14,24 +14,24 @@ std::string numbered(const char* name, std::size_t number) {
 }  // namespace
 
 HostedMachine::HostedMachine(const MachineSetup& setup, std::size_t number, MeshMonitor& monitor, UnitFactory* units)
-    : pipeline(numbered("tessera", number).c_str(), setup.registers, setup.design, units),
-      host(numbered("host", number).c_str(), pipeline, setup.base_triangles, tables_of(setup), number, setup.machines),
-      rasteriser(numbered("rasteriser", number).c_str(), pipeline.clock, setup.design.timing.stalls),
+    : machine(numbered("tessera", number).c_str(), setup.registers, setup.design, units),
+      host(numbered("host", number).c_str(), machine, setup.base_triangles, tables_of(setup), number, setup.machines),
+      rasteriser(numbered("rasteriser", number).c_str(), machine.clock, setup.design.timing.stalls),
       decisions(setup),
       monitor_(monitor) {
     if (units != nullptr)
         units->made(host);
     host.bind();
-    pipeline.lighting.to_rasteriser.bind(rasteriser.from_lighting);
-    pipeline.pass_or_tessellate.decided.bind(decisions);
-    pipeline.pass_or_tessellate.decided.bind(monitor);
-    pipeline.pass_or_tessellate.finished.bind(*this);
+    machine.lighting.to_rasteriser.bind(rasteriser.from_lighting);
+    machine.pass_or_tessellate.decided.bind(decisions);
+    machine.pass_or_tessellate.decided.bind(monitor);
+    machine.pass_or_tessellate.finished.bind(*this);
 }
 
 void HostedMachine::finish(std::uint64_t cycles) {
-    for (Unit* unit : pipeline.units())
+    for (Unit* unit : machine.units())
         unit->activity().finish(cycles);
-    pipeline.triangle_queue.history().finish(cycles);
+    machine.triangle_queue.history().finish(cycles);
 }
 
 }  // namespace tessera

@@ -19,21 +19,21 @@ inline Host::FillTables tables_of(const MachineSetup& setup) {
 /// all machines share.
 class HostedMachine : private tlm::tlm_analysis_if<datapath::Triangle> {
   public:
-    /// number: below setup.machines. `setup` and `monitor` must outlive it. units: see Pipeline.
+    /// number: below setup.machines. `setup` and `monitor` must outlive it. units: see Machine.
     HostedMachine(const MachineSetup& setup, std::size_t number, MeshMonitor& monitor, UnitFactory* units);
 
-    Pipeline pipeline;
+    Machine machine;
     Host host;
     Rasteriser rasteriser;
     Decisions decisions;
 
     /// Timed mode: the last cycle with any activity.
-    std::uint64_t last_cycle() const { return pipeline.clock.last_cycle(); }
+    std::uint64_t last_cycle() const { return machine.clock.last_cycle(); }
     /// Timed mode: call at the end of a run of `cycles` cycles.
     void finish(std::uint64_t cycles);
 
     /// Nothing is left to send, and nothing in flight.
-    bool drained() const { return host.idle() && pipeline.idle(); }
+    bool drained() const { return host.idle() && machine.idle(); }
 
   private:
     void write(const datapath::Triangle& finished) override { monitor_.record(finished, &decisions); }

@@ -31,14 +31,14 @@ Simulation::Simulation(const MachineSetup& its_setup, std::uint64_t triangle_lim
       monitor("mesh_monitor", setup.registers.back_face_culling, triangle_limit),
       machines(make_machines(setup, monitor, units)),
       only_own_units_(units == nullptr) {
-    for (const auto& machine : machines)
-        machine->pipeline.clock.halt_without_progress_for(cycles_without_progress);
+    for (const auto& hosted : machines)
+        hosted->machine.clock.halt_without_progress_for(cycles_without_progress);
 }
 
 void Simulation::observe_decisions(tlm::tlm_analysis_if<datapath::TrianglePass>& sink) {
-    for (const auto& machine : machines) {
-        machine->pipeline.pass_or_tessellate.decided.bind(sink);
-        machine->pipeline.tessellation.inserted.bind(sink);
+    for (const auto& hosted : machines) {
+        hosted->machine.pass_or_tessellate.decided.bind(sink);
+        hosted->machine.tessellation.inserted.bind(sink);
     }
 }
 
@@ -49,8 +49,8 @@ const HostedMachine& Simulation::last_machine() const {
 
 std::uint64_t Simulation::sent() const {
     std::uint64_t sum = 0;
-    for (const auto& machine : machines)
-        sum += machine->host.sent();
+    for (const auto& hosted : machines)
+        sum += hosted->host.sent();
     return sum;
 }
 
@@ -73,12 +73,12 @@ void start() {
 
 std::string Simulation::run() {
     if (only_own_units_ && machines.size() == 1)  // other units may depend on simulation time
-        pipeline.clock.run_ahead(cycles_ahead);
+        machine.clock.run_ahead(cycles_ahead);
     start();
     if (setup.design.transport == Transport::non_blocking) {
         cycles_ = last_machine().last_cycle() + 1;
-        for (const auto& machine : machines)
-            machine->finish(cycles_);
+        for (const auto& hosted : machines)
+            hosted->finish(cycles_);
     }
     const datapath::HeightTest height_test = setup.registers.formats.height_test;
     if (monitor.limit_reached())
@@ -93,12 +93,12 @@ std::string Simulation::run() {
                               "decide() asks for too many splits",
                               functions_of(height_test).name)
                 : ""));
-    for (const auto& machine : machines)
-        check_limits(machine->pipeline);
+    for (const auto& hosted : machines)
+        check_limits(hosted->machine);
     return stuck();
 }
 
-void Simulation::check_limits(const Pipeline& machine) const {
+void Simulation::check_limits(const Machine& machine) const {
     if (machine.clock.out_of_time())
         throw ResourceError(
             fmt::format("timing.clock_period = {} ps: after cycle {} simulated time ends, at 2^64 - 1 ps; lower the "
@@ -121,17 +121,17 @@ void Simulation::check_limits(const Pipeline& machine) const {
 
 std::string Simulation::stuck() const {
     std::string text;
-    for (const auto& machine : machines)
-        if (!machine->drained())
+    for (const auto& hosted : machines)
+        if (!hosted->drained())
             text += stuck(*machine, setup);
     return text;
 }
 
 std::string Simulation::stuck(const HostedMachine& machine, const MachineSetup& setup) {
-    const auto& pipeline = machine.pipeline;
+    const auto& machine = machine.machine;
     const auto& host = machine.host;
     const bool timed = setup.design.transport == Transport::non_blocking;
-    const CycleScheduler& clock = pipeline.clock;
+    const CycleScheduler& clock = machine.clock;
     std::string text =
         clock.stalled() ? fmt::format(
                               "livelock: for more than limits.cycles_without_progress = {} cycles of work, up to cycle "
@@ -139,11 +139,11 @@ std::string Simulation::stuck(const HostedMachine& machine, const MachineSetup& 
                               clock.most_without_progress(), clock.last_cycle())
                         : fmt::format("deadlock: no events are pending{}, but work remains\n",
                                       timed ? fmt::format(" after cycle {}", clock.last_cycle()) : std::string{});
-    const auto& counts = pipeline.pass_or_tessellate.counts();
+    const auto& counts = machine.pass_or_tessellate.counts();
     text += fmt::format("  host: {} of {} base triangles sent{}\n", host.sent(), host.total(),
                         host.idle() ? "" : ", waits for get_triangle");
     text += fmt::format("  finished: {} triangles\n", counts.finished);
-    for (const Unit* unit : pipeline.units()) {
+    for (const Unit* unit : machine.units()) {
         std::string line = unit->describe_contents();
         const Activity& activity = unit->activity();
         const sc_core::sc_object* by = activity.by();
@@ -155,7 +155,7 @@ std::string Simulation::stuck(const HostedMachine& machine, const MachineSetup& 
         if (!line.empty())
             text += fmt::format("  {}: {}\n", unit->name(), line);
     }
-    if (!clock.stalled() && pipeline.triangle_queue.waiting() > 0 && setup.design.queue.capacity > 0 &&
+    if (!clock.stalled() && machine.triangle_queue.waiting() > 0 && setup.design.queue.capacity > 0 &&
         setup.design.queue.overflow == QueueOverflow::stall)
         text += fmt::format(
             "  a full queue (hardware.queue_capacity = {}) does not spill: set hardware.queue_capacity = 0, without a limit, or "

@@ -12,7 +12,7 @@ namespace tessera {
 /// base mesh. One per process (SystemC elaborates once).
 struct Simulation {
     /// `setup` must outlive the simulation. triangle_limit: see MeshMonitor. cycles_without_progress: in timed mode,
-    /// the limit on cycles without a decided triangle; 0: none. units: see Pipeline; null: the machine's own.
+    /// the limit on cycles without a decided triangle; 0: none. units: see Machine; null: the machine's own.
     Simulation(const MachineSetup& setup, std::uint64_t triangle_limit, std::uint64_t cycles_without_progress = 0,
                UnitFactory* units = nullptr);
 
@@ -36,13 +36,13 @@ struct Simulation {
     const std::vector<std::unique_ptr<HostedMachine>> machines;
 
     /// The machine, or the first of several.
-    Pipeline& pipeline = machines.front()->pipeline;
+    Machine& machine = machines.front()->machine;
     Host& host = machines.front()->host;
     Rasteriser& rasteriser = machines.front()->rasteriser;
     Decisions& decisions = machines.front()->decisions;
 
   private:
-    void check_limits(const Pipeline& machine) const;
+    void check_limits(const Machine& machine) const;
     std::string stuck() const;
     static std::string stuck(const HostedMachine& machine, const MachineSetup& setup);
 

@@ -40,7 +40,7 @@ struct BoundCondition {
 
 /// All conditions: remarks and testbench/check/PROMISES.md are derived from this table. Besides,
 /// positions are rounded (formats.position_bits), and the picture is cut at camera.near_plane: a run measures their
-/// effect (testbench/check/surface_error/bound_check.h).
+/// effect (testbench/compare/bound_check.h).
 inline constexpr std::array bound_conditions{
     BoundCondition{"hardware.height_test = \"rank\"", "only the Rank Table has bounds",
                    [](const BoundFacts& f) { return f.height_test == datapath::HeightTest::rank; }},

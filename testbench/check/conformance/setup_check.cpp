@@ -458,9 +458,9 @@ SetupResult check_setup(const MachineSetup& setup, const GoldenJob& golden, Simu
     RegisterCheck(setup, golden, result).run();
     BaseCheck(setup, golden, result).run();
     const auto check_height_table = check_of(golden.job().hardware.height_test).table_check(setup, golden, result);
-    for (const auto& machine : simulation.machines) {
-        check_maps(setup, golden, machine->host, result);
-        check_height_table(machine->host);
+    for (const auto& hosted : simulation.machines) {
+        check_maps(setup, golden, hosted->host, result);
+        check_height_table(hosted->host);
     }
     return result;
 }

@@ -15,7 +15,7 @@ namespace {
 class Equations {
   public:
     /// Sets the machine that the following equations belong to.
-    void of(const std::string& machine) { machine_ = machine + ": "; }
+    void of(const std::string& hosted) { machine_ = machine + ": "; }
     void add(const std::string& name, std::uint64_t left, std::uint64_t right) {
         list_.push_back({machine_ + name, left, right});
     }
@@ -30,8 +30,8 @@ std::uint64_t items(const Unit& unit) {
     return unit.activity().items_in();
 }
 
-void add_triangles(Equations& list, const MachineSetup& setup, const HostedMachine& machine) {
-    const Pipeline& p = machine.pipeline;
+void add_triangles(Equations& list, const MachineSetup& setup, const HostedMachine& hosted) {
+    const Machine& p = hosted.machine;
     const auto& counts = p.pass_or_tessellate.counts();
     const auto& made = p.tessellation.made_into();
     const std::uint64_t cut = made[1] + made[2] + made[3] + made[4];
@@ -52,19 +52,19 @@ void add_triangles(Equations& list, const MachineSetup& setup, const HostedMachi
                  p.get_triangle.queue_triangles());
     }
     list.add("triangles taken by get_triangle from the host = base triangles", p.get_triangle.host_triangles(),
-             machine.host.sent());
+             hosted.host.sent());
     list.add("taken by triangle_queue = by get_triangle from it", p.triangle_queue.taken(),
              p.get_triangle.queue_triangles());
     list.add("triangles recirculated for normals = decided for normals", made[1], counts.normal_passes);
     list.add("finished = base triangles + edges split", counts.finished,
              p.get_triangle.host_triangles() + counts.edges_split);
-    list.add("taken by the rasteriser = finished - culled", machine.rasteriser.triangles(),
+    list.add("taken by the rasteriser = finished - culled", hosted.rasteriser.triangles(),
              counts.finished - counts.culled);
 }
 
 /// Requests to the normal map, by the unit that bumps the vertices and by the Normal Tests. Three Tessellation Tests units
 /// each receive the two ends of their edge.
-std::uint64_t normal_map_requests(const Pipeline& p, std::uint64_t vertices, std::uint64_t normal) {
+std::uint64_t normal_map_requests(const Machine& p, std::uint64_t vertices, std::uint64_t normal) {
     return (p.tessellation_tests.size() == 1 ? vertices : 2 * vertices) + normal;
 }
 
@@ -82,7 +82,7 @@ struct Tested {
 
 /// `each`: entries per map read of a vertex or an edge. `codes_an_edge`: the same, for an edge whose height test
 /// decides by codes.
-void add_reads(Equations& list, const Pipeline& p, const Tested& tested, std::uint64_t each,
+void add_reads(Equations& list, const Machine& p, const Tested& tested, std::uint64_t each,
                std::uint64_t codes_an_edge) {
     const auto& [vertices, edges, midpoints, normal, summed_height, by_codes, off_lattice] = tested;
     const std::string times = each == 1 ? "" : std::to_string(each) + " times ";
@@ -112,7 +112,7 @@ struct Asked {
 
 /// The sum over the ports of the machine for which `which` is true.
 template <class Which>
-Asked asked(const Pipeline& p, Which&& which) {
+Asked asked(const Machine& p, Which&& which) {
     Asked sum;
     for_each_inside(p, [&](const sc_core::sc_object& object) {
         const auto* const socket = dynamic_cast<const MemoryPort::Socket*>(&object);
@@ -126,8 +126,8 @@ Asked asked(const Pipeline& p, Which&& which) {
 
 /// For the streams and memories that the machine has: an item that is sent is taken, and counted by a unit that has no
 /// other input; a memory receives the requests of its ports.
-void add_connections(Equations& list, const HostedMachine& machine) {
-    const Pipeline& p = machine.pipeline;
+void add_connections(Equations& list, const HostedMachine& hosted) {
+    const Machine& p = hosted.machine;
     const auto name_of = [&](const sc_core::sc_object& object) {
         const std::string name = object.name(), prefix = std::string(p.name()) + ".";
         return name.compare(0, prefix.size(), prefix) == 0 ? name.substr(prefix.size()) : name;
@@ -140,7 +140,7 @@ void add_connections(Equations& list, const HostedMachine& machine) {
         list.add("items taken by " + name_of(*input) + " = sent by " + name_of(output), input->taken(), output.sent());
         taken[input->get_parent_object()].push_back(input->taken());
     };
-    for_each_output(machine.host, add_stream);
+    for_each_output(hosted.host, add_stream);
     for_each_inside(p, [&](const sc_core::sc_object& object) {
         if (const auto* module = dynamic_cast<const sc_core::sc_module*>(&object))
             for_each_output(*module, add_stream);
@@ -160,9 +160,9 @@ void add_connections(Equations& list, const HostedMachine& machine) {
 }
 
 /// What no stream tells: how many items each unit sends.
-void add_timed(Equations& list, const MachineSetup& setup, const HostedMachine& machine, const Tested& tested) {
+void add_timed(Equations& list, const MachineSetup& setup, const HostedMachine& hosted, const Tested& tested) {
     const auto& [vertices, edges, midpoints, normal, summed_height, by_codes, off_lattice] = tested;
-    const Pipeline& p = machine.pipeline;
+    const Machine& p = hosted.machine;
     const bool families = setup.design.work == Work::family;
     const std::uint64_t triangles = p.get_triangle.host_triangles() + p.get_triangle.queue_triangles();
     list.add("triangles in get_triangle = taken by it", items(p.get_triangle), triangles);
@@ -201,8 +201,8 @@ void add_timed(Equations& list, const MachineSetup& setup, const HostedMachine& 
              p.off_chip_memory.bytes_written());
 }
 
-void add_machine(Equations& list, const MachineSetup& setup, const HostedMachine& machine) {
-    const Pipeline& p = machine.pipeline;
+void add_machine(Equations& list, const MachineSetup& setup, const HostedMachine& hosted) {
+    const Machine& p = hosted.machine;
     const DecidingUnit::Counts& counts = p.pass_or_tessellate.counts();
     const std::uint64_t base = p.get_triangle.host_triangles();
     // A triangle with k split edges has k + 1 children with 4 k new edges, the only ones that are not final; with
@@ -213,7 +213,7 @@ void add_machine(Equations& list, const MachineSetup& setup, const HostedMachine
     const std::uint64_t edges = families      ? 3 * counts.finished + counts.edges_uncut
                                 : final_edges ? 3 * base + 4 * counts.edges_split + counts.edges_uncut
                                               : 3 * counts.passes;
-    const Decisions::Evaluated& evaluated = machine.decisions.evaluated();
+    const Decisions::Evaluated& evaluated = hosted.decisions.evaluated();
     const Tested tested{3 * base,
                         edges,
                         families ? counts.edges_split : edges,
@@ -239,10 +239,10 @@ void add_machine(Equations& list, const MachineSetup& setup, const HostedMachine
 std::vector<Conservation> conservation(const Simulation& simulation) {
     Equations list;
     list.add("finished = emitted", Totals(simulation).counts.finished, simulation.monitor.mesh.triangles.size());
-    for (const auto& machine : simulation.machines) {
+    for (const auto& hosted : simulation.machines) {
         if (simulation.machines.size() > 1)
-            list.of(machine->pipeline.name());
-        add_machine(list, simulation.setup, *machine);
+            list.of(hosted->machine.name());
+        add_machine(list, simulation.setup, *hosted);
     }
     return list.take();
 }
@@ -253,9 +253,9 @@ void observe(Simulation& simulation, TransportCheck& check) {
 }
 
 void observe_finished(Simulation& simulation, TransportCheck& check) {
-    for (const auto& machine : simulation.machines) {
-        machine->pipeline.pass_or_tessellate.finished.bind(check);
-        machine->rasteriser.taken.bind(check);
+    for (const auto& hosted : simulation.machines) {
+        hosted->machine.pass_or_tessellate.finished.bind(check);
+        hosted->rasteriser.taken.bind(check);
     }
 }
 

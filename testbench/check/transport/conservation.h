@@ -23,9 +23,9 @@ std::vector<Conservation> conservation(const Simulation& simulation);
 
 /// Sum of `figure` over all Tessellation Tests units.
 template <class Figure>
-std::uint64_t sum_over_tests(const Pipeline& pipeline, Figure figure) {
+std::uint64_t sum_over_tests(const Machine& machine, Figure figure) {
     std::uint64_t sum = 0;
-    for (const TessellationTests& tests : pipeline.tessellation_tests)
+    for (const TessellationTests& tests : machine.tessellation_tests)
         sum += figure(tests);
     return sum;
 }

@@ -33,7 +33,7 @@ int sc_main(int, char**) {
     const PreparedScene scene = square_with_bump();
     Design design;
     design.transport = Transport::non_blocking;  // timed mode
-    Pipeline machine("machine", scene.registers, design);
+    Machine machine("machine", scene.registers, design);
     Host host("host", machine, scene.base_triangles, [&](const TableWriter& writer) { write_tables(scene, writer); });
     Rasteriser rasteriser("rasteriser", machine.clock, design.timing.stalls);
     host.bind();

@@ -37,8 +37,8 @@ std::vector<UnitArea> area_of(const std::vector<Unit*>& units) {
 
 std::vector<UnitArea> area_of(const Simulation& simulation) {
     std::vector<UnitArea> all;
-    for (const auto& machine : simulation.machines)
-        add(all, machine->pipeline.units());
+    for (const auto& hosted : simulation.machines)
+        add(all, hosted->machine.units());
     return all;
 }
 

@@ -7,9 +7,9 @@
 #include "testbench/check/conformance/end_to_end.h"
 #include "testbench/check/conformance/setup_check.h"
 #include "testbench/check/mesh/invariants.h"
-#include "testbench/check/surface_error/bound_check.h"
 #include "testbench/check/transport/read_check.h"
 #include "testbench/check/transport/transport_check.h"
+#include "testbench/compare/bound_check.h"
 #include "testbench/output/report/figure.h"
 
 namespace tessera {

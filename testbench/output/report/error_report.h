@@ -2,7 +2,7 @@
 #include <string>
 #include <vector>
 
-#include "testbench/check/surface_error/measure_error.h"
+#include "testbench/compare/measure_error.h"
 #include "testbench/job/job.h"
 #include "testbench/output/report/statistics.h"
 

@@ -75,10 +75,10 @@ void memory_figures(std::vector<Figure>& all, const std::string& name, const dat
 }
 
 void cache_figures(std::vector<Figure>& all, const std::string& name, const Simulation& simulation,
-                   const std::unique_ptr<TableCache> Pipeline::*cache, std::uint64_t finished) {
+                   const std::unique_ptr<TableCache> Machine::*cache, std::uint64_t finished) {
     std::uint64_t hits = 0, fills = 0, entries = 0, bytes = 0;
-    for (const auto& machine : simulation.machines) {
-        const TableCache& its = *(machine->pipeline.*cache);
+    for (const auto& hosted : simulation.machines) {
+        const TableCache& its = *(hosted->machine.*cache);
         hits += its.hits();
         fills += its.fills();
         entries += its.entries_read();
@@ -294,16 +294,16 @@ std::vector<Figure> collect_statistics(const MachineSetup& setup, const Simulati
     lighting.add("triangles", totals.lit, "triangle", "lit and sent to the rasteriser");
 
     const auto table = [&](const std::string& name, const datapath::TableLayout& layout, std::uint64_t reads,
-                           const std::unique_ptr<TableCache> Pipeline::*cache) {
+                           const std::unique_ptr<TableCache> Machine::*cache) {
         memory_figures(all, name, layout, reads, edges);
-        if (simulation.pipeline.*cache != nullptr && timed)
+        if (simulation.machine.*cache != nullptr && timed)
             cache_figures(all, name, simulation, cache, counts.finished);
     };
     table("displacement_map", setup.registers.displacement_map, totals.displacement_map_reads,
-          &Pipeline::displacement_map_cache);
-    table("normal_map", setup.registers.normal_map, totals.normal_map_reads, &Pipeline::normal_map_cache);
+          &Machine::displacement_map_cache);
+    table("normal_map", setup.registers.normal_map, totals.normal_map_reads, &Machine::normal_map_cache);
     table(functions_of(setup.registers.formats.height_test).table(), setup.registers.height_table,
-          totals.height_table_reads, &Pipeline::height_table_cache);
+          totals.height_table_reads, &Machine::height_table_cache);
 
     FigureGroup saturated(all, "saturations");
     for (const SaturationFigure& figure : saturation_figures(setup, totals.saturations))

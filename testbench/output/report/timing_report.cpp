@@ -7,7 +7,7 @@
 #include <string_view>
 #include <utility>
 
-#include "modules/units/families/sequence_tests.h"
+#include "modules/units/family/sequence_tests.h"
 #include "testbench/output/report/ratio.h"
 
 namespace tessera {
@@ -65,9 +65,9 @@ double Bottleneck::bound() const {
     return remaining > 0 ? 1 / remaining : 0;
 }
 
-Bottleneck find_bottleneck(const Pipeline& pipeline, std::uint64_t cycles) {
+Bottleneck find_bottleneck(const Machine& machine, std::uint64_t cycles) {
     std::vector<const Unit*> left;
-    for (const Unit* unit : pipeline.units())
+    for (const Unit* unit : machine.units())
         if (utilisation(*unit, cycles) > 0)
             left.push_back(unit);
     const auto take_highest = [&] {
@@ -89,10 +89,10 @@ Bottleneck find_bottleneck(const Pipeline& pipeline, std::uint64_t cycles) {
 namespace {
 
 /// The unit that waited longest for a cache, if that is most of the time, and the cache.
-std::string wait_for_a_cache(const Pipeline& pipeline, std::uint64_t cycles) {
+std::string wait_for_a_cache(const Machine& machine, std::uint64_t cycles) {
     std::string text;
     std::uint64_t longest = cycles / 2;
-    for (const Unit* unit : pipeline.units()) {
+    for (const Unit* unit : machine.units()) {
         const Activity::Share* share = largest_share(*unit, State::waiting_for_memory);
         if (share == nullptr || share->cycles <= longest || dynamic_cast<const TableCache*>(share->by) == nullptr)
             continue;
@@ -104,9 +104,9 @@ std::string wait_for_a_cache(const Pipeline& pipeline, std::uint64_t cycles) {
 }
 
 /// The unit blocked longest by `by`, and for how many cycles.
-std::pair<const Unit*, std::uint64_t> longest_wait(const Pipeline& pipeline, const Unit* by) {
+std::pair<const Unit*, std::uint64_t> longest_wait(const Machine& machine, const Unit* by) {
     std::pair<const Unit*, std::uint64_t> longest{nullptr, 0};
-    for (const Unit* unit : pipeline.units()) {
+    for (const Unit* unit : machine.units()) {
         for (const Activity::Share& share : unit->activity().shares())
             if (share.by == by && share.cycles > longest.second)
                 longest = {unit, share.cycles};
@@ -118,48 +118,48 @@ constexpr std::uint64_t most_ports = 64;      // timing.*_ports
 constexpr std::size_t most_normal_tests = 9;  // hardware.normal_tests
 constexpr double worth_raising = 1.05;        // times faster without the limit
 
-std::string off_chip_key(const Pipeline& pipeline) {
-    const OffChipMemory& memory = pipeline.off_chip_memory;
+std::string off_chip_key(const Machine& machine) {
+    const OffChipMemory& memory = machine.off_chip_memory;
     std::uint64_t requests = memory.activity().items_in();
-    for (const TableCache* cache : pipeline.caches())
+    for (const TableCache* cache : machine.caches())
         requests += cache->fills();
     // Twice the bandwidth saves nothing where a request takes a single cycle.
     return memory.occupied_cycles() >= 2 * requests ? "timing.off_chip_bandwidth" : "";
 }
 
 /// The key of which twice the value relieves this unit; empty if there is none that surely does.
-std::string relieving_key(const Pipeline& pipeline, const Unit& unit) {
+std::string relieving_key(const Machine& machine, const Unit& unit) {
     const auto ports = [](std::string table, std::uint64_t all) {
         table.erase(std::min({table.find("_cache"), table.find("_for_tests"), table.size()}));
         return 2 * all <= most_ports ? "timing." + table + "_ports" : "";
     };
-    if (&unit == &pipeline.off_chip_memory)
-        return off_chip_key(pipeline);
+    if (&unit == &machine.off_chip_memory)
+        return off_chip_key(machine);
     if (const auto* memory = dynamic_cast<const TableMemory*>(&unit); memory != nullptr) {
         const std::string cache = std::string(unit.basename()) + "_cache";
-        for (const TableCache* its : pipeline.caches())
+        for (const TableCache* its : machine.caches())
             if (its->basename() == cache)
-                return off_chip_key(pipeline);
-        return ports(&unit == &pipeline.height_table ? height_table_spec(pipeline.registers().formats).name
-                                                     : std::string(unit.basename()) + "_for_tests",
+                return off_chip_key(machine);
+        return ports(&unit == &machine.height_table ? height_table_spec(machine.registers().formats).name
+                                                    : std::string(unit.basename()) + "_for_tests",
                      memory->slots_per_cycle());
     }
     if (dynamic_cast<const TableCache*>(&unit) != nullptr)
-        return ports(&unit == pipeline.height_table_cache.get() ? height_table_spec(pipeline.registers().formats).name
-                                                                : unit.basename(),
+        return ports(&unit == machine.height_table_cache.get() ? height_table_spec(machine.registers().formats).name
+                                                               : unit.basename(),
                      1);
-    const bool shared = !pipeline.netlist().all<FamilySequenceTests>().empty();
-    const std::size_t normal_tests = pipeline.netlist().all<NormalTest>().size();
+    const bool shared = !machine.netlist().all<FamilySequenceTests>().empty();
+    const std::size_t normal_tests = machine.netlist().all<NormalTest>().size();
     if (shared && 2 * normal_tests <= most_normal_tests && dynamic_cast<const NormalTest*>(&unit) != nullptr)
         return "hardware.normal_tests";
     return "";
 }
 
 /// The one key that relieves all units of the limit, if they hold up the others noticeably.
-std::string relieving_key(const Pipeline& pipeline, const Bottleneck& found) {
+std::string relieving_key(const Machine& machine, const Bottleneck& found) {
     std::string key;
     for (const Unit* unit : found.first.units) {
-        const std::string its = relieving_key(pipeline, *unit);
+        const std::string its = relieving_key(machine, *unit);
         if (its.empty() || (!key.empty() && its != key))
             return "";
         key = its;
@@ -167,7 +167,7 @@ std::string relieving_key(const Pipeline& pipeline, const Bottleneck& found) {
     return found.bound() >= worth_raising ? key : "";
 }
 
-std::string binding_text(const Pipeline& pipeline, std::uint64_t cycles, const Bottleneck& found) {
+std::string binding_text(const Machine& machine, std::uint64_t cycles, const Bottleneck& found) {
     const bool several = found.first.units.size() > 1;
     std::string text = found.first.names();
     if (several)
@@ -175,7 +175,7 @@ std::string binding_text(const Pipeline& pipeline, std::uint64_t cycles, const B
     else
         text += fmt::format(": {:.1f} % of {}", 100 * found.first.utilisation,
                             is_memory(*found.first.units[0]) ? "its port slots are taken" : "its throughput is used");
-    const auto [waiting, most] = longest_wait(pipeline, found.first.units[0]);
+    const auto [waiting, most] = longest_wait(machine, found.first.units[0]);
     if (waiting != nullptr)
         text += fmt::format("; {} is delayed by {} in {:.1f} % of all cycles", unit_name(*waiting),
                             several ? unit_name(*found.first.units[0]) : "it", 100 * ratio(most, cycles));
@@ -183,7 +183,7 @@ std::string binding_text(const Pipeline& pipeline, std::uint64_t cycles, const B
         text += fmt::format("; without {} at most {:.1f} times faster, bounded by {}, {} {:.1f} %",
                             several ? "them" : "it", found.bound(), found.next.names(),
                             found.next.units.size() > 1 ? "which tie at" : "at", 100 * found.next.utilisation);
-    if (const std::string key = relieving_key(pipeline, found); !key.empty())
+    if (const std::string key = relieving_key(machine, found); !key.empty())
         text += "; a larger " + key + " helps";
     return text;
 }
@@ -193,26 +193,26 @@ double mean_stay(const Unit& unit) {
 }
 
 /// The pipeline stage in which an item stays longest, except those that wait for others by design.
-const Unit& longest_stay(const Pipeline& pipeline) {
-    const Unit* longest = &pipeline.transform;
-    for (const Unit* unit : pipeline.units()) {
+const Unit& longest_stay(const Machine& machine) {
+    const Unit* longest = &machine.transform;
+    for (const Unit* unit : machine.units()) {
         const bool waits =
-            is_queue_or_join(*unit) || unit == &pipeline.get_triangle || unit == &pipeline.pass_or_tessellate;
+            is_queue_or_join(*unit) || unit == &machine.get_triangle || unit == &machine.pass_or_tessellate;
         if (!waits && mean_stay(*unit) > mean_stay(*longest))
             longest = unit;
     }
     return *longest;
 }
 
-std::string latency_text(const Pipeline& pipeline, std::uint64_t cycles, const Bottleneck& found) {
-    const Unit& get = pipeline.get_triangle;
+std::string latency_text(const Machine& machine, std::uint64_t cycles, const Bottleneck& found) {
+    const Unit& get = machine.get_triangle;
     const double starved = state_percent(get, State::starved, cycles),
                  blocked = state_percent(get, State::blocked, cycles);
-    std::string held_up = wait_for_a_cache(pipeline, cycles);
+    std::string held_up = wait_for_a_cache(machine, cycles);
     if (held_up.empty())
         held_up = starved > blocked ? fmt::format("get_triangle is starved {:.1f} %", starved)
                                     : fmt::format("get_triangle is blocked {:.1f} %", blocked);
-    const Unit& longest = longest_stay(pipeline);
+    const Unit& longest = longest_stay(machine);
     return fmt::format(
         "none: bound by latency; of the busiest ({}) {:.1f} % of the throughput is used; at most {:.1f} times faster "
         "with more triangles in flight ({}) or shorter latencies (an item stays {:.1f} cycles in {})",
@@ -222,11 +222,11 @@ std::string latency_text(const Pipeline& pipeline, std::uint64_t cycles, const B
 
 }  // namespace
 
-std::string bottleneck_text(const Pipeline& pipeline, std::uint64_t cycles) {
-    const Bottleneck found = find_bottleneck(pipeline, cycles);
+std::string bottleneck_text(const Machine& machine, std::uint64_t cycles) {
+    const Bottleneck found = find_bottleneck(machine, cycles);
     if (found.first.units.empty())
         return "none: no unit was busy";
-    return found.binding ? binding_text(pipeline, cycles, found) : latency_text(pipeline, cycles, found);
+    return found.binding ? binding_text(machine, cycles, found) : latency_text(machine, cycles, found);
 }
 
 std::string queue_levels_csv(const LevelHistory& history) {

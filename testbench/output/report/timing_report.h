@@ -42,10 +42,10 @@ struct Bottleneck {
 /// A unit with at least this utilisation counts as binding.
 constexpr double binding_utilisation = 0.85;
 
-Bottleneck find_bottleneck(const Pipeline& pipeline, std::uint64_t cycles);
+Bottleneck find_bottleneck(const Machine& machine, std::uint64_t cycles);
 
 /// The same in words, one or two sentences.
-std::string bottleneck_text(const Pipeline& pipeline, std::uint64_t cycles);
+std::string bottleneck_text(const Machine& machine, std::uint64_t cycles);
 
 /// The Triangle Queue's level over time, in at most 1024 intervals: first cycle and highest level of each.
 std::string queue_levels_csv(const LevelHistory& history);

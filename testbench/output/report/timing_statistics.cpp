@@ -10,7 +10,7 @@ namespace tessera {
 namespace {
 
 void run_figures(std::vector<Figure>& all, const Simulation& simulation) {
-    const Pipeline& p = simulation.last_machine().pipeline;
+    const Machine& p = simulation.last_machine().machine;
     const Totals totals(simulation);
     const DecidingUnit::Counts& counts = totals.counts;
     const std::uint64_t cycles = simulation.cycles();
@@ -86,11 +86,11 @@ void queue_figures(std::vector<Figure>& all, const Simulation& simulation, const
 
 void timing_figures(std::vector<Figure>& all, const Simulation& simulation) {
     run_figures(all, simulation);
-    for (const auto& machine : simulation.machines) {
-        for (const Unit* unit : machine->pipeline.units()) {
+    for (const auto& hosted : simulation.machines) {
+        for (const Unit* unit : hosted->machine.units()) {
             unit_figures(all, *unit, simulation.cycles());
-            if (unit == &machine->pipeline.triangle_queue)
-                queue_figures(all, simulation, machine->pipeline.triangle_queue);
+            if (unit == &hosted->machine.triangle_queue)
+                queue_figures(all, simulation, hosted->machine.triangle_queue);
         }
     }
 }

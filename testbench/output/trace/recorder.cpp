@@ -4,24 +4,24 @@
 
 namespace tessera {
 
-Recorder::Recorder(Pipeline& pipeline, VcdWriter& vcd, TraceWindow window, const std::vector<const Unit*>& units)
-    : pipeline_(pipeline),
+Recorder::Recorder(Machine& machine, VcdWriter& vcd, TraceWindow window, const std::vector<const Unit*>& units)
+    : machine_(machine),
       vcd_(vcd),
       window_(window),
       // A randomly stalled item wakes its unit only when the stall ends, but waits at its input from the beginning.
-      show_every_unit_(pipeline.random_stalls()),
-      cycle_signal_(vcd.add(pipeline.clock.name(), "cycle", 48)),
-      passes_signal_(vcd.add(pipeline.name(), "passes_under_way", 32)) {
+      show_every_unit_(machine.random_stalls()),
+      cycle_signal_(vcd.add(machine.clock.name(), "cycle", 48)),
+      passes_signal_(vcd.add(machine.name(), "passes_under_way", 32)) {
     for (const Unit* unit : units) {
         traced_.push_back({unit, CycleScheduler::bit_of(*unit), Signals(vcd, numbers_, unit->name())});
         traced_.back().signals.begin(true);
         unit->trace_signals(traced_.back().signals);
     }
-    pipeline.clock.observe(this, window.first, window.last);
+    machine.clock.observe(this, window.first, window.last);
 }
 
 Recorder::~Recorder() {
-    pipeline_.clock.observe(nullptr);
+    machine_.clock.observe(nullptr);
 }
 
 void Recorder::show_all() {
@@ -30,7 +30,7 @@ void Recorder::show_all() {
         traced.unit->trace_signals(traced.signals);
         traced.signals.set_running();
     }
-    vcd_.set(passes_signal_, pipeline_.passes_under_way());
+    vcd_.set(passes_signal_, machine_.passes_under_way());
 }
 
 /// Records cycles in which only the cycle number changes.
@@ -50,7 +50,7 @@ void Recorder::show_called(std::uint64_t called) {
             traced.unit->trace_signals(traced.signals);
         }
     }
-    vcd_.set(passes_signal_, pipeline_.passes_under_way());
+    vcd_.set(passes_signal_, machine_.passes_under_way());
 }
 
 void Recorder::begin(std::uint64_t cycle) {

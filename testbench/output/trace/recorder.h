@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "modules/pipeline.h"
+#include "modules/machine.h"
 #include "modules/stage/signals.h"
 #include "modules/timing/cycle_scheduler.h"
 #include "modules/unit_numbers.h"
@@ -17,7 +17,7 @@ namespace tessera {
 class Recorder : public CycleObserver {
   public:
     /// Call before the simulation begins. window: that of `vcd`. units: those whose signals are recorded.
-    Recorder(Pipeline& pipeline, VcdWriter& vcd, TraceWindow window, const std::vector<const Unit*>& units);
+    Recorder(Machine& machine, VcdWriter& vcd, TraceWindow window, const std::vector<const Unit*>& units);
     ~Recorder() override;
 
     /// Call after the run and the units' Activity::finish. `cycles`: length of the run, at least 1.
@@ -37,7 +37,7 @@ class Recorder : public CycleObserver {
     void end_cycles_before(std::uint64_t cycle);
     std::uint64_t end_of_window() const { return window_.last == UINT64_MAX ? window_.last : window_.last + 1; }
 
-    Pipeline& pipeline_;
+    Machine& machine_;
     VcdWriter& vcd_;
     TraceWindow window_;
     bool show_every_unit_;

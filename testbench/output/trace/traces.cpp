@@ -66,19 +66,19 @@ TraceWindow window_of(const Job& job) {
     return {static_cast<std::uint64_t>(job.output.trace_from), static_cast<std::uint64_t>(job.output.trace_to)};
 }
 
-std::string_view name_in_pipeline(const Unit& unit, const Pipeline& pipeline) {
-    return std::string_view(unit.name()).substr(std::string_view(pipeline.name()).size() + 1);
+std::string_view name_in_machine(const Unit& unit, const Machine& machine) {
+    return std::string_view(unit.name()).substr(std::string_view(machine.name()).size() + 1);
 }
 
 }  // namespace
 
-std::vector<const Unit*> units_to_trace(const std::string& words, const Pipeline& pipeline) {
+std::vector<const Unit*> units_to_trace(const std::string& words, const Machine& machine) {
     constexpr const char* separators = " ,\t\n";
     std::vector<const Unit*> chosen;
     const auto choose = [&](std::string_view word) {
         bool found = false;
-        for (const Unit* unit : pipeline.units()) {
-            if (name_in_pipeline(*unit, pipeline).find(word) == std::string_view::npos)
+        for (const Unit* unit : machine.units()) {
+            if (name_in_machine(*unit, machine).find(word) == std::string_view::npos)
                 continue;
             found = true;
             if (std::find(chosen.begin(), chosen.end(), unit) == chosen.end())
@@ -87,8 +87,8 @@ std::vector<const Unit*> units_to_trace(const std::string& words, const Pipeline
         if (found)
             return;
         std::string names;
-        for (const Unit* unit : pipeline.units())
-            names += fmt::format("{}{}", names.empty() ? "" : ", ", name_in_pipeline(*unit, pipeline));
+        for (const Unit* unit : machine.units())
+            names += fmt::format("{}{}", names.empty() ? "" : ", ", name_in_machine(*unit, machine));
         throw InputError(fmt::format("output.trace_units = \"{}\": no unit's name contains \"{}\"; the units are {}",
                                      words, word, names));
     };
@@ -98,7 +98,7 @@ std::vector<const Unit*> units_to_trace(const std::string& words, const Pipeline
         begin = words.find_first_not_of(separators, end);
     }
     if (chosen.empty())
-        chosen.assign(pipeline.units().begin(), pipeline.units().end());
+        chosen.assign(machine.units().begin(), machine.units().end());
     return chosen;
 }
 
@@ -106,7 +106,7 @@ struct Traces::Files {
     Files(const Job& job, const fs::path& folder, Simulation& simulation, const std::vector<const Unit*>& units)
         : file(folder / "trace.vcd"),
           vcd(file, simulation.setup.design.timing.cycle_picoseconds, window_of(job)),
-          recorder(simulation.pipeline, vcd, window_of(job), units) {}
+          recorder(simulation.machine, vcd, window_of(job), units) {}
 
     AtomicStream file;
     VcdWriter vcd;

@@ -14,7 +14,7 @@ namespace tessera {
 
 /// The units whose signals output.trace_units selects: those whose name contains one of its words, or all if it is
 /// empty. Throws InputError on a word that no name contains.
-std::vector<const Unit*> units_to_trace(const std::string& words, const Pipeline& pipeline);
+std::vector<const Unit*> units_to_trace(const std::string& words, const Machine& machine);
 
 /// The waveforms requested by a job, trace.vcd, written into the run's folder during the simulation; the file gets its
 /// name only when complete (AtomicFile, AtomicSet). Without finish() nothing remains.

@@ -1,9 +1,9 @@
 #include <cmath>
 #include <string>
 
+#include "testbench/bake/bake.h"
+#include "testbench/bake/surface_file.h"
 #include "testbench/common/error.h"
-#include "testbench/input/surface/bake.h"
-#include "testbench/input/surface/surface_file.h"
 #include "testbench/prove/fuzz/fuzz_target.h"
 
 namespace tessera::fuzz {

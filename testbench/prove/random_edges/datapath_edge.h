@@ -10,7 +10,7 @@
 /// The recursion, using only the datapath's functions.
 namespace tessera::testing {
 
-using tessera::Machine;
+using tessera::EdgeMachine;
 using tessera::make_tables;
 using tessera::same_bits;
 using tessera::Tables;
@@ -18,7 +18,7 @@ using tessera::Tables;
 /// The recursion: triangles waiting first in, first out.
 class WorkList {
   public:
-    WorkList(Machine& machine, const std::vector<datapath::Triangle>& base)
+    WorkList(EdgeMachine& machine, const std::vector<datapath::Triangle>& base)
         : waiting(base.begin(), base.end()), machine_(machine) {
         for (datapath::Triangle& triangle : waiting)
             machine.complete_base(triangle);
@@ -57,7 +57,7 @@ class WorkList {
     }
 
   private:
-    Machine& machine_;
+    EdgeMachine& machine_;
 };
 
 }  // namespace tessera::testing

@@ -44,9 +44,9 @@ inline Tables make_tables(datapath::Registers& registers, const std::vector<std:
 }
 
 /// Edges of arbitrary registers and tables. Throws std::out_of_range if a read lies outside its table.
-class Machine : public BareEdges<Machine> {
+class EdgeMachine : public BareEdges<EdgeMachine> {
   public:
-    Machine(const datapath::Registers& with, Tables tables)
+    EdgeMachine(const datapath::Registers& with, Tables tables)
         : BareEdges(with.formats.height_test), registers(with), tables_(std::move(tables)) {}
 
     datapath::Registers registers;

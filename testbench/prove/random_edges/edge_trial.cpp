@@ -34,13 +34,13 @@ class Trial {
 
   private:
     void try_machine(RandomMachine& made, std::uint64_t edges);
-    void try_edge(Machine& machine, const DirectEdge& direct, const Vertex& i, const Vertex& j);
+    void try_edge(EdgeMachine& machine, const DirectEdge& direct, const Vertex& i, const Vertex& j);
     void set_thresholds(datapath::TestParameters& tests, const datapath::Formats& formats, const EdgeMeasures& measures,
                         const datapath::HeightDecision& heights);
     std::uint64_t threshold(std::uint64_t measure, std::uint64_t usual, std::uint64_t& at_limit);
-    void try_packed(const Machine& machine, const TrianglePass& pass, const Vertex& inserted);
-    void try_moved(Machine& machine, const TrianglePass& here, const Vertex& inserted);
-    void fault(std::uint64_t& count, const std::string& what, const Machine& machine, const TrianglePass& pass,
+    void try_packed(const EdgeMachine& machine, const TrianglePass& pass, const Vertex& inserted);
+    void try_moved(EdgeMachine& machine, const TrianglePass& here, const Vertex& inserted);
+    void fault(std::uint64_t& count, const std::string& what, const EdgeMachine& machine, const TrianglePass& pass,
                const Vertex& inserted);
 
     Random random_;
@@ -48,7 +48,7 @@ class Trial {
     Vertex third_, inserted_;
 };
 
-void Trial::fault(std::uint64_t& count, const std::string& what, const Machine& machine, const TrianglePass& pass,
+void Trial::fault(std::uint64_t& count, const std::string& what, const EdgeMachine& machine, const TrianglePass& pass,
                   const Vertex& inserted) {
     if (++count > 1 || !result_.first_fault.empty())
         return;
@@ -102,7 +102,7 @@ void Trial::set_thresholds(datapath::TestParameters& tests, const datapath::Form
                                                              std::int64_t{1} << (2 * formats.normal.fraction));
 }
 
-void Trial::try_edge(Machine& machine, const DirectEdge& direct, const Vertex& i, const Vertex& j) {
+void Trial::try_edge(EdgeMachine& machine, const DirectEdge& direct, const Vertex& i, const Vertex& j) {
     TrianglePass one, other;
     one.triangle.vertices = {i, j, third_};
     other.triangle.vertices = {j, i, inserted_};
@@ -111,7 +111,7 @@ void Trial::try_edge(Machine& machine, const DirectEdge& direct, const Vertex& i
     inserted_ = inserted_vertex(one, 0);
     const EdgeMeasures measures = direct.measure(i, j, inserted_);
     const datapath::Formats& formats = machine.registers.formats;
-    const datapath::HeightDecision heights = machine.test_heights(Machine::height_edge(i, j, inserted_.texture));
+    const datapath::HeightDecision heights = machine.test_heights(EdgeMachine::height_edge(i, j, inserted_.texture));
     set_thresholds(machine.registers.tests, formats, measures, heights);
     machine.decide(one, 0);
     machine.decide(other, 0);
@@ -152,7 +152,7 @@ void Trial::try_edge(Machine& machine, const DirectEdge& direct, const Vertex& i
 }
 
 /// Every field of the vertices fits its format: a queue entry holds them.
-void Trial::try_packed(const Machine& machine, const TrianglePass& pass, const Vertex& inserted) {
+void Trial::try_packed(const EdgeMachine& machine, const TrianglePass& pass, const Vertex& inserted) {
     const datapath::Formats& formats = machine.registers.formats;
     datapath::Triangle triangle = pass.triangle;
     triangle.vertices[2] = inserted;
@@ -164,7 +164,7 @@ void Trial::try_packed(const Machine& machine, const TrianglePass& pass, const V
 }
 
 /// Tries the same edge shifted by whole periods, from its other end: the other copy of a closed surface's seam.
-void Trial::try_moved(Machine& machine, const TrianglePass& here, const Vertex& inserted) {
+void Trial::try_moved(EdgeMachine& machine, const TrianglePass& here, const Vertex& inserted) {
     const datapath::MapGeometry& map = machine.registers.map;
     const datapath::Formats& formats = machine.registers.formats;
     Vertex i = here.triangle.vertices[0], j = here.triangle.vertices[1];
@@ -203,7 +203,7 @@ void Trial::try_moved(Machine& machine, const TrianglePass& here, const Vertex& 
 
 void Trial::try_machine(RandomMachine& made, std::uint64_t edges) {
     ++result_.machines;
-    Machine& machine = made.machine;
+    EdgeMachine& machine = made.machine;
     const DirectEdge direct(machine.registers, made.map);
     third_ = inserted_ = make_random_vertex(random_, machine, nullptr);
     Vertex i = third_;

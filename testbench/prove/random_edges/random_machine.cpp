@@ -148,10 +148,10 @@ RandomMachine make_random_machine(Random& random, FormatWidths widths) {
     registers.displacement = {static_cast<std::int32_t>(random.any_size(formats.position.highest)),
                               static_cast<std::int32_t>(random.any_size(formats.position.highest))};
     registers.transform = any_transform(random, formats);
-    return {Machine(registers, std::move(tables)), DirectMap(registers.map, std::move(codes), std::move(normals))};
+    return {EdgeMachine(registers, std::move(tables)), DirectMap(registers.map, std::move(codes), std::move(normals))};
 }
 
-datapath::Vertex make_random_vertex(Random& random, Machine& machine, const datapath::Vertex* near) {
+datapath::Vertex make_random_vertex(Random& random, EdgeMachine& machine, const datapath::Vertex* near) {
     const datapath::MapGeometry& map = machine.registers.map;
     const Formats& formats = machine.registers.formats;
     const int fraction = formats.texture.fraction;

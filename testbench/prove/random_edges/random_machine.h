@@ -10,7 +10,7 @@ enum class FormatWidths { usual, narrow, wide, any };
 
 /// Random registers and tables, in the machine's format and as a plain map.
 struct RandomMachine {
-    Machine machine;
+    EdgeMachine machine;
     DirectMap map;
 };
 
@@ -21,6 +21,6 @@ RandomMachine make_random_machine(Random& random, FormatWidths widths);
 
 /// A complete base vertex at a random place: on the map, its borders and, if it repeats, periods beyond; or near
 /// another vertex, where rounding matters.
-datapath::Vertex make_random_vertex(Random& random, Machine& machine, const datapath::Vertex* near);
+datapath::Vertex make_random_vertex(Random& random, EdgeMachine& machine, const datapath::Vertex* near);
 
 }  // namespace tessera

@@ -1,5 +1,5 @@
 #pragma once
-#include "modules/pipeline.h"
+#include "modules/machine.h"
 #include "modules/rasteriser.h"
 #include "testbench/prove/schedule/plan.h"
 
@@ -7,6 +7,6 @@ namespace tessera::schedule {
 
 /// The plan of a machine of the paper's design in timed mode: one Tessellation Tests unit in parallel order, a queue
 /// without a capacity, tables on chip, each with one reader on each side. `design`: the machine's.
-Plan plan_of(const tessera::Pipeline& machine, const Rasteriser& rasteriser, const Design& design);
+Plan plan_of(const tessera::Machine& machine, const Rasteriser& rasteriser, const Design& design);
 
 }  // namespace tessera::schedule

@@ -69,10 +69,10 @@ void PassRecord::read(Reader reader, const PartTag& tag, const Reads& reads, con
         part.banks[k] = static_cast<std::uint8_t>(memories.at(part.memory)(reads.addresses()[k]));
 }
 
-void PassRecord::observe(HostedMachine& machine) {
-    registers_ = &machine.pipeline.registers();
-    machine.pipeline.pass_or_tessellate.decided.bind(decisions_);
-    machine.pipeline.pass_or_tessellate.finished.bind(finishes_);
+void PassRecord::observe(HostedMachine& hosted) {
+    registers_ = &hosted.machine.registers();
+    hosted.machine.pass_or_tessellate.decided.bind(decisions_);
+    hosted.machine.pass_or_tessellate.finished.bind(finishes_);
 }
 
 void PassRecord::Decisions::write(const datapath::TrianglePass& decided) {

@@ -32,7 +32,7 @@ class PassRecord {
     void read(Reader reader, const PartTag& tag, const Reads& reads, const std::vector<BankOfEntry>& memories);
 
     /// Records the decisions from now on.
-    void observe(HostedMachine& machine);
+    void observe(HostedMachine& hosted);
 
     /// After the run: in the order in which Get Triangle began them. Leaves the record empty.
     std::vector<RecordedPass> take_passes();

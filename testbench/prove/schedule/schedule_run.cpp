@@ -18,9 +18,9 @@
 #include "testbench/common/child_process.h"
 #include "testbench/common/hash.h"
 #include "testbench/machine/simulation.h"
-#include "testbench/prove/schedule/machine.h"
 #include "testbench/prove/schedule/machine_plan.h"
 #include "testbench/prove/schedule/recorded_units.h"
+#include "testbench/prove/schedule/recurrences.h"
 
 namespace tessera {
 
@@ -46,17 +46,17 @@ class ItemTimes : public ActivityObserver, public schedule::ItemObserver {
 /// A machine's units by the schedule's numbers; null: absent, or the rasteriser.
 using Units = std::array<Unit*, schedule::units>;
 
-Units units_of(Pipeline& machine) {
+Units units_of(Machine& hosted) {
     Units units{};
-    for (Unit* const unit : machine.units())
+    for (Unit* const unit : hosted.units())
         for (std::size_t k = 0; k < all_units.size(); ++k)
             if (unit->basename() == std::string_view(all_units[k].name))
                 units[k] = unit;
-    units[schedule::height_test] = &machine.tessellation_tests[0].height_test;
-    units[schedule::displacement_map] = &machine.displacement_map;
-    units[schedule::displacement_map_for_tests] = machine.displacement_map_for_tests.get();
-    units[schedule::normal_map] = &machine.normal_map;
-    units[schedule::height_table] = &machine.height_table;
+    units[schedule::height_test] = &hosted.tessellation_tests[0].height_test;
+    units[schedule::displacement_map] = &hosted.displacement_map;
+    units[schedule::displacement_map_for_tests] = hosted.displacement_map_for_tests.get();
+    units[schedule::normal_map] = &hosted.normal_map;
+    units[schedule::height_table] = &hosted.height_table;
     return units;
 }
 
@@ -98,15 +98,15 @@ std::string levels_line(std::uint64_t most, const LevelHistory& history) {
 /// Figures of a clocked machine, and of its schedule, in the same form.
 class ClockedText {
   public:
-    explicit ClockedText(HostedMachine& machine) : machine_(machine), units_(units_of(machine.pipeline)) {
+    explicit ClockedText(HostedMachine& hosted) : hosted_(hosted), units_(units_of(hosted.machine)) {
         for (std::size_t k = 0; k < units_.size(); ++k)
             if (units_[k] != nullptr)
                 units_[k]->activity().observe(&times_[k]);
     }
 
     std::string text() const {
-        const Pipeline& p = machine_.pipeline;
-        std::string text = fmt::format("last cycle {}\n", machine_.last_cycle());
+        const Machine& p = hosted_.machine;
+        std::string text = fmt::format("last cycle {}\n", hosted_.last_cycle());
         for (std::size_t k = 0; k < units_.size(); ++k)
             if (units_[k] != nullptr)
                 text += unit_text(*units_[k], times_[k]);
@@ -137,17 +137,17 @@ class ClockedText {
         return text + "\n";
     }
 
-    HostedMachine& machine_;
+    HostedMachine& hosted_;
     const Units units_;
     std::array<ItemTimes, schedule::units> times_;
 };
 
 class ScheduledText {
   public:
-    ScheduledText(HostedMachine& machine, const Design& design)
-        : machine_(machine),
-          units_(units_of(machine.pipeline)),
-          schedule_(schedule::plan_of(machine.pipeline, machine.rasteriser, design)) {
+    ScheduledText(HostedMachine& hosted, const Design& design)
+        : hosted_(hosted),
+          units_(units_of(hosted.machine)),
+          schedule_(schedule::plan_of(hosted.machine, hosted.rasteriser, design)) {
         for (std::size_t k = 0; k < units_.size(); ++k)
             if (units_[k] != nullptr)
                 schedule_.observe(static_cast<schedule::Unit>(k), &times_[k]);
@@ -156,7 +156,7 @@ class ScheduledText {
     /// Returns the first pass that the schedule begins in another order; empty: none.
     std::string run(const std::vector<schedule::RecordedPass>& passes) {
         std::vector<std::uint64_t> kept;  // the hash of each child, by place
-        schedule_.send(machine_.host.total());
+        schedule_.send(hosted_.host.total());
         for (std::size_t number = 0;; ++number) {
             const schedule::Source::Next& next = schedule_.next();
             if (!next.any)
@@ -206,15 +206,15 @@ class ScheduledText {
             if (share.by == schedule::nobody)
                 continue;
             const char* const by =
-                share.by == schedule::rasteriser ? machine_.rasteriser.name() : units_[share.by]->name();
+                share.by == schedule::rasteriser ? hosted_.rasteriser.name() : units_[share.by]->name();
             text += share_text(share.state, by, share.cycles);
         }
         return text + "\n";
     }
 
-    HostedMachine& machine_;
+    HostedMachine& hosted_;
     const Units units_;
-    schedule::Machine schedule_;
+    schedule::Recurrences schedule_;
     std::array<ItemTimes, schedule::units> times_;
 };
 
@@ -237,18 +237,18 @@ std::string difference(const Job& job, const BaseMesh& mesh, const HeightMap& ma
     schedule::RecordedUnits units;
     Simulation simulation(setup, most_triangles, most_cycles_without_progress, &units);
     std::vector<std::unique_ptr<ClockedText>> clocked;
-    for (const auto& machine : simulation.machines) {
-        units.of(machine->pipeline.clock).observe(*machine);
-        clocked.push_back(std::make_unique<ClockedText>(*machine));
+    for (const auto& hosted : simulation.machines) {
+        units.of(hosted->machine.clock).observe(*hosted);
+        clocked.push_back(std::make_unique<ClockedText>(*hosted));
     }
     if (std::string stuck = simulation.run(); !stuck.empty())
         return stuck;
     std::size_t passes = 0;
     for (std::size_t k = 0; k < simulation.machines.size(); ++k) {
-        HostedMachine& machine = *simulation.machines[k];
-        const std::vector<schedule::RecordedPass> recorded = units.of(machine.pipeline.clock).take_passes();
+        HostedMachine& hosted = *simulation.machines[k];
+        const std::vector<schedule::RecordedPass> recorded = units.of(hosted.machine.clock).take_passes();
         passes += recorded.size();
-        ScheduledText scheduled(machine, setup.design);
+        ScheduledText scheduled(hosted, setup.design);
         if (std::string other = scheduled.run(recorded); !other.empty())
             return other;
         if (std::string other = first_difference(clocked[k]->text(), scheduled.text(simulation.cycles()));

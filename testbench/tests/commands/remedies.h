@@ -377,7 +377,7 @@ inline const std::vector<NotFollowed>& not_followed() {
         {"Save it with a display window around its pixels", foreign},
         {"Save it cropped to its display window", foreign},
         {"give each machine a memory, or addresses, of its own", "", "modules/memories/test_bridged_machine.cpp"},
-        {"call Pipeline::begin_frame()", "", "modules/test_stopped.cpp"},
+        {"call Machine::begin_frame()", "", "modules/test_stopped.cpp"},
         {"raise Design::answer_cycles", "", "modules/memories/test_bridged_machine.cpp"},
         {"give each machine and table a memory", "", "modules/device/test_device_tables.cpp"},
         {"there the map must be alike on both sides as well", none},

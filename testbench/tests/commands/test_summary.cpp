@@ -243,7 +243,7 @@ TEST_CASE("summary: spilled triangles are reported") {
     Job job = full_split_job(1, 1);
     job.hardware.queue.capacity = 2;
     TimedRun simulation(setup_of(job));
-    const TriangleQueue& queue = simulation.pipeline.triangle_queue;
+    const TriangleQueue& queue = simulation.machine.triangle_queue;
     REQUIRE(queue.spilled() > 0);
     CHECK(value_of(summary(simulation.setup, simulation, {}, {}, 1), "spilled") ==
           std::to_string(queue.spilled()) + " triangles, at most 3 on chip, with those on their way out");

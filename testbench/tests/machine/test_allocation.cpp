@@ -14,7 +14,7 @@ namespace {
 
 void expect_no_allocation(const MachineSetup& setup, Simulation& simulation) {
     REQUIRE(simulation.run().empty());
-    const std::uint64_t edges = simulation.pipeline.edges_tested();
+    const std::uint64_t edges = simulation.machine.edges_tested();
     REQUIRE(edges > 50'000);
     simulation.monitor.mesh.triangles.clear();
     const std::uint64_t before = allocations_so_far();
@@ -22,7 +22,7 @@ void expect_no_allocation(const MachineSetup& setup, Simulation& simulation) {
     REQUIRE(simulation.run().empty());
     const std::uint64_t used = allocations_so_far() - before;
     CAPTURE(used, setup.base_triangles.size());
-    CHECK(simulation.pipeline.edges_tested() == 2 * edges);
+    CHECK(simulation.machine.edges_tested() == 2 * edges);
     // the kernel allocates occasionally when a thread waits: far less than once per thousand edges
     CHECK(used < edges / 1000);
 }
@@ -32,7 +32,7 @@ void expect_no_allocation_checked(const Job& job) {
     Simulation simulation(setup, 1'000'000);
     const GoldenInputs golden(setup);
     Scoreboard scoreboard(setup.registers, golden);
-    simulation.pipeline.pass_or_tessellate.decided.bind(scoreboard);
+    simulation.machine.pass_or_tessellate.decided.bind(scoreboard);
     expect_no_allocation(setup, simulation);
 }
 
@@ -76,5 +76,5 @@ TEST_CASE("timed mode with three tests units, stalls and a queue that spills all
     const MachineSetup setup = setup_of(job);
     Simulation simulation(setup, 1'000'000);
     expect_no_allocation(setup, simulation);
-    CHECK(simulation.pipeline.triangle_queue.spilled() > 1000);
+    CHECK(simulation.machine.triangle_queue.spilled() > 1000);
 }

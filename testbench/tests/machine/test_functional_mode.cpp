@@ -26,14 +26,14 @@ MachineSetup functional_setup(const std::string& settings = "") {
 /// enough for the mesh.
 void expect_sound(const CheckedRun& run) {
     CHECK(run.conformance.passed(0.5));
-    CHECK(run.pipeline.saturations().total() == 0);
+    CHECK(run.machine.saturations().total() == 0);
     run.expect_closed_in_texture();
-    const auto& made = run.pipeline.tessellation.made_into();
+    const auto& made = run.machine.tessellation.made_into();
     const bool families = run.setup.design.work == Work::family;
     const std::uint64_t waited =
         families ? made[1] + made[2] + made[3] + made[4] : made[1] + 2 * made[2] + 3 * made[3] + 4 * made[4];
-    CHECK(run.pipeline.triangle_queue.taken() == waited);
-    CHECK(run.pipeline.get_triangle.queue_triangles() == waited);
+    CHECK(run.machine.triangle_queue.taken() == waited);
+    CHECK(run.machine.get_triangle.queue_triangles() == waited);
 }
 
 const CaseTable meshes("",
@@ -56,7 +56,7 @@ const CaseTable meshes("",
 
 TEST_CASE("memories read by transactions: the same mesh, and reads are counted as through DMI") {
     const CheckedRun run(functional_setup("hardware.direct_memory=false"));
-    const Pipeline& p = run.pipeline;
+    const Machine& p = run.machine;
     CHECK(p.displace_vertex.displacement_map.reads() == p.displacement_map.transactions());
     CHECK(p.normal_map_reads() == p.normal_map.transactions());
     CHECK(p.height_table_reads() == p.height_table.transactions());
@@ -142,10 +142,10 @@ TEST_CASE("a machine that is stopped with triangles in its queue is not idle") {
     // a base triangle that makes more than go without a pause
     const MachineSetup setup = functional_setup("mesh.columns=1 mesh.rows=1");
     Simulation simulation(setup, 500);
-    CHECK(simulation.pipeline.idle());
+    CHECK(simulation.machine.idle());
     CHECK_THROWS_AS(simulation.run(), ResourceError);
-    CHECK(simulation.pipeline.triangle_queue.waiting() > 0);
-    CHECK_FALSE(simulation.pipeline.idle());
+    CHECK(simulation.machine.triangle_queue.waiting() > 0);
+    CHECK_FALSE(simulation.machine.idle());
 }
 
 TEST_CASE("a read outside a table is an error that names the reader") {

@@ -83,7 +83,7 @@ const CaseTable meshes("formats: ",
                            CHECK(run.counts.edges_split > 0);
                            CHECK(run.setup.input_saturations.position == 0);
                            CHECK(run.setup.input_saturations.normal == 0);
-                           const datapath::Saturations counted = run.pipeline.saturations();
+                           const datapath::Saturations counted = run.machine.saturations();
                            // ensured by validation: 1.0 fits a normal, the farthest corner fits w, the model fits half
                            // of the position's range
                            CHECK(counted.normal == 0);

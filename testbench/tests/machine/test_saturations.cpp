@@ -34,9 +34,9 @@ class Watcher : public tlm::tlm_analysis_if<TrianglePass> {
 Saturations run_watched(const MachineSetup& setup, const std::function<void(const TrianglePass&)>& look) {
     Simulation simulation(setup, 1'000'000, 100'000);
     Watcher watcher(look);
-    simulation.pipeline.pass_or_tessellate.decided.bind(watcher);
+    simulation.machine.pass_or_tessellate.decided.bind(watcher);
     run_timed(simulation);
-    return simulation.pipeline.saturations();
+    return simulation.machine.saturations();
 }
 
 Job small_job(const std::string& settings = "") {
@@ -67,7 +67,7 @@ TEST_CASE("saturations: the default job has none in any quantity") {
     const MachineSetup setup = setup_of(timed_job());
     Simulation simulation(setup, 1'000'000, 100'000);
     REQUIRE(simulation.run().empty());
-    const auto figures = saturation_figures(setup, simulation.pipeline.saturations());
+    const auto figures = saturation_figures(setup, simulation.machine.saturations());
     CHECK(figures.size() == 12);
     for (const SaturationFigure& figure : figures) {
         INFO(figure.name);
@@ -169,12 +169,12 @@ TEST_CASE("saturations: normals beyond a format of one integer bit are counted")
     setup.registers.transform.normal_rows = {{{0, 0, 32768}, {0, 1000, 0}, {0, 0, 60000}}};
     Simulation simulation(setup, 1'000'000, 100'000);
     REQUIRE(simulation.run().empty());
-    const Saturations counted = simulation.pipeline.saturations();
-    const std::uint64_t edges = simulation.pipeline.edges_tested(), base = setup.base_triangles.size();
+    const Saturations counted = simulation.machine.saturations();
+    const std::uint64_t edges = simulation.machine.edges_tested(), base = setup.base_triangles.size();
     // N_ij in two units, T_ij, N'_ij; N' of each base triangle's corners
     CHECK(counted.normal == 4 * edges + 3 * base);
     // 32767 * 60000 / 2^15 does not fit; 32767 * 32768 / 2^15 does
-    CHECK(counted.screen_normal == simulation.pipeline.transform.normals());
+    CHECK(counted.screen_normal == simulation.machine.transform.normals());
     CHECK(counted.screen_normal == 3 * base);
 }
 
@@ -223,12 +223,12 @@ TEST_CASE("saturations: generations beyond their field are counted, with the Gen
             expected += (pass.split >> k & 1) != 0 && oldest == 3 ? 1u : 0u;
         }
     });
-    simulation.pipeline.pass_or_tessellate.decided.bind(watcher);
+    simulation.machine.pass_or_tessellate.decided.bind(watcher);
     run_timed(simulation);
     CHECK(deepest == 3);
     CHECK(expected > 50);
-    CHECK(simulation.pipeline.saturations().generation == expected);
-    CHECK(simulation.pipeline.triangle_queue.spilled() > 0);
+    CHECK(simulation.machine.saturations().generation == expected);
+    CHECK(simulation.machine.triangle_queue.spilled() > 0);
 
     const BareRun bare(setup);
     CHECK(bare.saturations.generation == expected);
@@ -240,7 +240,7 @@ TEST_CASE("saturations: vertices that fully face the light are counted") {
         timed_job(), "map.source=constant camera.eye=[0,-3,0] camera.target=[0,0,0] hardware.light=[0,0,1]"));
     Simulation simulation(setup, 1'000'000, 100'000);
     REQUIRE(simulation.run().empty());
-    const Saturations counted = simulation.pipeline.saturations();
+    const Saturations counted = simulation.machine.saturations();
     CHECK(counted.intensity == 3 * setup.base_triangles.size());
     CHECK(counted.total() == counted.intensity);
     const auto figures = saturation_figures(setup, counted);

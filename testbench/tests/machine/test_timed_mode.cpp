@@ -58,7 +58,7 @@ const CaseTable meshes(
         const CheckedRun run(with_settings(timed_job(), row.job + row.settings));
         CHECK(run.conformance.passed(0.5));
         CHECK(run.mesh.triangles.size() > 2 * run.setup.base_triangles.size());
-        CHECK(run.pipeline.edges_tested() > row.more_edges_than);
+        CHECK(run.machine.edges_tested() > row.more_edges_than);
     });
 
 struct Spill {
@@ -83,11 +83,11 @@ const CaseTable spills(
     },
     [](const Spill& row) {
         const CheckedRun run(with_settings(timed_job(), small + row.settings));
-        const TriangleQueue& its_queue = run.pipeline.triangle_queue;
+        const TriangleQueue& its_queue = run.machine.triangle_queue;
         CHECK(its_queue.spilled() > 0);
         CHECK(its_queue.on_chip_high_water_mark() == row.places + 1);  // and one on its way out
         CHECK(its_queue.high_water_mark() > row.places + 1);
-        CHECK(run.pipeline.off_chip_memory.bytes_written() % its_queue.spilled() == 0);
+        CHECK(run.machine.off_chip_memory.bytes_written() % its_queue.spilled() == 0);
     });
 
 }  // namespace
@@ -95,8 +95,8 @@ const CaseTable spills(
 TEST_CASE("timed mesh: a cylinder in repeat, whose rectangles wrap") {
     const CheckedRun run(with_settings(timed_job(), cylinder));
     // up to nine entries for one that wraps
-    CHECK(run.pipeline.height_table.transactions() > 12 * run.pipeline.edges_tested());
-    CHECK(run.pipeline.edges_tested() > 3000);
+    CHECK(run.machine.height_table.transactions() > 12 * run.machine.edges_tested());
+    CHECK(run.machine.edges_tested() > 3000);
 }
 
 TEST_CASE("timed mesh: culling") {
@@ -110,14 +110,14 @@ TEST_CASE("timed mesh: culling") {
 // their children, are in flight.
 TEST_CASE("timed mesh: last in first out, 64 places: nothing is spilled") {
     const CheckedRun run(with_settings(timed_job(), small + bounded_queue("lifo", 64)));
-    CHECK(run.pipeline.triangle_queue.spilled() == 0);
-    CHECK(run.pipeline.triangle_queue.high_water_mark() <= 64);
-    CHECK(run.pipeline.off_chip_memory.occupied_cycles() == 0);
+    CHECK(run.machine.triangle_queue.spilled() == 0);
+    CHECK(run.machine.triangle_queue.high_water_mark() <= 64);
+    CHECK(run.machine.off_chip_memory.occupied_cycles() == 0);
 }
 
 // The same counts as without stalls; only the time differs.
 TEST_CASE("timed mesh: stalls change the number of cycles and nothing else") {
     const CheckedRun run(with_settings(timed_job(), small + random_stalls(31, 300)));
-    CHECK(run.pipeline.height_table.transactions() == 12 * run.pipeline.edges_tested());
+    CHECK(run.machine.height_table.transactions() == 12 * run.machine.edges_tested());
     CHECK(run.simulation.cycles() > 36 * run.counts.passes + 17);
 }

@@ -17,7 +17,7 @@ namespace tessera::testing {
 /// starts.
 struct NamedMachine : sc_core::sc_module {
     const MachineSetup& setup;
-    Pipeline pipeline;
+    Machine machine;
     Host host;
     Rasteriser rasteriser;
     MeshMonitor monitor;
@@ -27,22 +27,22 @@ struct NamedMachine : sc_core::sc_module {
     NamedMachine(const sc_core::sc_module_name& name, const MachineSetup& its_setup, UnitFactory* units = nullptr)
         : sc_module(name),
           setup(its_setup),
-          pipeline("pipeline", setup.registers, setup.design, units),
-          host("host", pipeline, setup.base_triangles, tables_of(setup)),
-          rasteriser("rasteriser", pipeline.clock, setup.design.timing.stalls),
+          machine("pipeline", setup.registers, setup.design, units),
+          host("host", machine, setup.base_triangles, tables_of(setup)),
+          rasteriser("rasteriser", machine.clock, setup.design.timing.stalls),
           monitor("monitor", setup.registers.back_face_culling, 1'000'000) {
         host.bind();
-        pipeline.lighting.to_rasteriser.bind(rasteriser.from_lighting);
-        pipeline.pass_or_tessellate.finished.bind(monitor);
-        pipeline.clock.halt_without_progress_for(1'000'000);
+        machine.lighting.to_rasteriser.bind(rasteriser.from_lighting);
+        machine.pass_or_tessellate.finished.bind(monitor);
+        machine.clock.halt_without_progress_for(1'000'000);
         SC_HAS_PROCESS(NamedMachine);
         SC_METHOD(note_drained);
         dont_initialize();
-        sensitive << pipeline.drained();
+        sensitive << machine.drained();
     }
 
-    std::uint64_t cycles() const { return pipeline.clock.last_cycle() + 1; }
-    bool finished() const { return host.idle() && pipeline.idle() && !pipeline.clock.halted(); }
+    std::uint64_t cycles() const { return machine.clock.last_cycle() + 1; }
+    bool finished() const { return host.idle() && machine.idle() && !machine.clock.halted(); }
 
   private:
     void note_drained() { drained.push_back(sc_core::sc_time_stamp()); }

@@ -21,7 +21,7 @@ std::string line_of(const std::string& report, const std::string& unit) {
 
 /// The cycles in the four states add up also for a run that did not drain.
 void require_cycles_add_up(const Simulation& simulation) {
-    for (const Unit* unit : simulation.pipeline.units())
+    for (const Unit* unit : simulation.machine.units())
         testing::require_cycles_add_up(*unit, simulation.cycles());
 }
 
@@ -44,8 +44,8 @@ TEST_CASE("a full queue that stalls is a deadlock, reported unit by unit") {
     const std::string report = simulation.run();
     INFO(report);
     CHECK_THAT(report, Catch::StartsWith("deadlock: "));
-    CHECK_FALSE(simulation.pipeline.clock.stalled());
-    CHECK(simulation.pipeline.clock.idle());
+    CHECK_FALSE(simulation.machine.clock.stalled());
+    CHECK(simulation.machine.clock.idle());
     CHECK_THAT(report, Contains("18 base triangles"));
     CHECK_THAT(line_of(report, "triangle_queue"), Contains("triangles") &&
                                                       Contains("no room for the next (capacity 8)") &&
@@ -53,9 +53,9 @@ TEST_CASE("a full queue that stalls is a deadlock, reported unit by unit") {
     CHECK_THAT(line_of(report, "tessellation"), Contains("waits for triangle_queue"));
     CHECK_THAT(line_of(report, "pass_or_tessellate"), Contains("waits for tessellation"));
     CHECK_THAT(line_of(report, "get_triangle"), Contains("partly sent"));
-    CHECK(simulation.pipeline.triangle_queue.on_chip_high_water_mark() == 8 + 1);
+    CHECK(simulation.machine.triangle_queue.on_chip_high_water_mark() == 8 + 1);
     require_cycles_add_up(simulation);
-    CHECK(simulation.pipeline.passes_under_way() > 0);
+    CHECK(simulation.machine.passes_under_way() > 0);
     // an idle unit is not listed
     CHECK(line_of(report, "lighting").empty());
     CHECK(line_of(report, "off_chip_memory").empty());
@@ -63,7 +63,7 @@ TEST_CASE("a full queue that stalls is a deadlock, reported unit by unit") {
 
 TEST_CASE("a full queue that spills is not a deadlock") {
     TimedRun simulation(setup_of(full_queue_job(QueueOverflow::spill)), 1'000'000);
-    CHECK(simulation.pipeline.triangle_queue.spilled() > 0);
+    CHECK(simulation.machine.triangle_queue.spilled() > 0);
 }
 
 TEST_CASE("a full queue that may not overflow ends the run with an error that names the key") {
@@ -97,7 +97,7 @@ TEST_CASE("a machine that works and decides nothing within the bound is a livelo
     const std::string report = simulation.run();
     INFO(report);
     CHECK_THAT(report, Catch::StartsWith("livelock: ") && Contains("limits.cycles_without_progress = 20"));
-    CHECK(simulation.pipeline.clock.stalled());
+    CHECK(simulation.machine.clock.stalled());
     require_cycles_add_up(simulation);
 }
 
@@ -147,27 +147,27 @@ struct Wall : sc_core::sc_module, CycleProcess {
 // Behind a rasteriser that takes only one triangle, units fill up one after another, back to the host.
 TEST_CASE("a rasteriser that stops taking triangles causes a deadlock back to the queue") {
     const MachineSetup setup = setup_of(full_split_job(3, 2));
-    Pipeline pipeline("tessera", setup.registers, setup.design);
-    Host host("host", pipeline, setup.base_triangles, tables_of(setup));
-    Wall wall("wall", pipeline.clock);
+    Machine machine("tessera", setup.registers, setup.design);
+    Host host("host", machine, setup.base_triangles, tables_of(setup));
+    Wall wall("wall", machine.clock);
     host.bind();
-    pipeline.lighting.to_rasteriser.bind(wall.in);
+    machine.lighting.to_rasteriser.bind(wall.in);
     sc_core::sc_start();
-    CHECK(pipeline.clock.idle());
-    CHECK_FALSE(pipeline.idle());
+    CHECK(machine.clock.idle());
+    CHECK_FALSE(machine.idle());
     const auto expect_blocked = [](const Unit& unit, const sc_core::sc_object& by) {
         INFO(unit.name());
         CHECK(unit.activity().state() == State::blocked);
         CHECK(unit.activity().by() == &by);
         CHECK_FALSE(unit.describe_contents().empty());
     };
-    expect_blocked(pipeline.lighting, wall);
-    expect_blocked(pipeline.pass_or_tessellate, pipeline.lighting);
-    CHECK(pipeline.pass_or_tessellate.most_incomplete() == setup.design.timing.pass_or_tessellate.buffer);
-    expect_blocked(pipeline.transform, pipeline.pass_or_tessellate);
-    expect_blocked(pipeline.get_triangle, pipeline.calculate_new_p);
-    expect_blocked(pipeline.triangle_queue, pipeline.get_triangle);
+    expect_blocked(machine.lighting, wall);
+    expect_blocked(machine.pass_or_tessellate, machine.lighting);
+    CHECK(machine.pass_or_tessellate.most_incomplete() == setup.design.timing.pass_or_tessellate.buffer);
+    expect_blocked(machine.transform, machine.pass_or_tessellate);
+    expect_blocked(machine.get_triangle, machine.calculate_new_p);
+    expect_blocked(machine.triangle_queue, machine.get_triangle);
     // register stages hold no more than their capacity
-    CHECK(pipeline.transform.activity().level() <= 20);
-    CHECK(pipeline.lighting.activity().level() == 4);
+    CHECK(machine.transform.activity().level() <= 20);
+    CHECK(machine.lighting.activity().level() == 4);
 }

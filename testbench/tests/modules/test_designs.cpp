@@ -183,8 +183,8 @@ const CaseTable designs(
         CHECK(counts.split_by_both == expected.split_by_both);
         CHECK(counts.stopped_by_view_alone == expected.stopped_by_view_alone);
         CHECK(counts.stopped_by_several == expected.stopped_by_several);
-        for (const auto& machine : run.simulation.machines)
-            CHECK(machine->pipeline.pass_or_tessellate.counts().finished > 0);
+        for (const auto& hosted : run.simulation.machines)
+            CHECK(hosted->machine.pass_or_tessellate.counts().finished > 0);
     });
 
 }  // namespace

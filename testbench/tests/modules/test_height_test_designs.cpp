@@ -195,7 +195,7 @@ const CaseTable sides("sides of the displacement map: ",
                       },
                       [](const SidesRow& row) {
                           const CheckedRun run(setup_with(curvature, row.settings));
-                          const Pipeline& p = run.pipeline;
+                          const Machine& p = run.machine;
                           REQUIRE((p.displacement_map_for_tests != nullptr) == row.two_sides);
                           const sc_core::sc_object* first = &p.displacement_map;
                           if (p.displacement_map_cache)

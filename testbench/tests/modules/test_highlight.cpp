@@ -80,7 +80,7 @@ TEST_CASE("Highlight Test: it does not slow down the paper's design") {
     Job job = with_highlight(full_split_job(3, 4));
     job.tests.highlight_normal_threshold = 0;
     TimedRun simulation(setup_of(job));
-    CHECK(simulation.pipeline.pass_or_tessellate.counts().passes == 6138);
+    CHECK(simulation.machine.pass_or_tessellate.counts().passes == 6138);
     CHECK(simulation.decisions.counts().split_in_highlight > 50);
     CHECK(simulation.cycles() == 5 + 3 + 36 * 6138 + 9);
 }

@@ -137,7 +137,7 @@ const CaseTable designs(
         TimedRun simulation(one_triangle(with_settings(one_quad_job(), row.settings)));
         CHECK(simulation.cycles() == row.cycles);
         const bool three_units = simulation.setup.design.tests_units == 3;  // they read six corners instead of three
-        CHECK(simulation.pipeline.normal_map.transactions() == (three_units ? 6 : 3) + 3);
+        CHECK(simulation.machine.normal_map.transactions() == (three_units ? 6 : 3) + 3);
     });
 
 /// A base triangle, all of whose edges split once.
@@ -169,7 +169,7 @@ const CaseTable families(
         TimedRun simulation(one_triangle(with_settings(one_quad_job(), row.settings)));
         CHECK(simulation.cycles() == row.cycles);
         CHECK(simulation.rasteriser.triangles() == (splits ? 4 : 1));
-        CHECK(simulation.pipeline.edges_tested() == (splits ? 12 : 3));
+        CHECK(simulation.machine.edges_tested() == (splits ? 12 : 3));
     });
 
 }  // namespace
@@ -192,7 +192,7 @@ TEST_CASE("one triangle, a different latency in every unit") {
     CHECK(simulation.cycles() == 105 + 113 + 1);
 
     // and each unit keeps each item for its own latency, on the critical path or beside it
-    const Pipeline& p = simulation.pipeline;
+    const Machine& p = simulation.machine;
     const TessellationTests& tests = p.tessellation_tests[0];
     const std::pair<const Unit*, std::uint64_t> stays[] = {
         {&p.calculate_new_p, 9 * 5}, {&p.displace_vertex, 6 * (7 + 11) + 3 * 11},
@@ -212,7 +212,7 @@ TEST_CASE("one triangle, a different latency in every unit") {
 // Normals only take part in the second round: three parts, read nothing, and skip the tests. Six parts in the first.
 TEST_CASE("one triangle: numbers of parts and reads") {
     TimedRun simulation(one_triangle());
-    const Pipeline& p = simulation.pipeline;
+    const Machine& p = simulation.machine;
     CHECK(p.get_triangle.parts_sent() == 9);
     CHECK(p.displacement_map.transactions() == 6);
     CHECK(p.normal_map.transactions() == 6);

@@ -10,7 +10,7 @@
 
 #include "modules/sockets/packed_item.h"
 #include "modules/stage/stage_steps.h"
-#include "modules/units/families/tessellation.h"
+#include "modules/units/family/tessellation.h"
 #include "testbench/tests/modules/named_machine.h"
 #include "testbench/tests/modules/rtl_displace_vertex.h"
 #include "testbench/tests/modules/unit_behind.h"
@@ -225,9 +225,9 @@ Job in_mode(Mode mode, Job job = {}) {
 /// Requires equal numbers of cycles in each state of each unit.
 void expect_same_cycles(NamedMachine& left, NamedMachine& right) {
     CHECK(left.cycles() == right.cycles());
-    for (std::size_t k = 0; k < left.pipeline.units().size(); ++k) {
-        Unit& one = *left.pipeline.units()[k];
-        Unit& other = *right.pipeline.units()[k];
+    for (std::size_t k = 0; k < left.machine.units().size(); ++k) {
+        Unit& one = *left.machine.units()[k];
+        Unit& other = *right.machine.units()[k];
         INFO(one.name());
         one.activity().finish(left.cycles());
         other.activity().finish(right.cycles());
@@ -260,7 +260,7 @@ void expect_halved_test(const Job& job) {
     const auto* const unit = sc_core::sc_find_object("halved.pipeline.tessellation_tests_0.summed_height_test");
     REQUIRE(unit != nullptr);
     CHECK(unit == units.halved[0]);
-    CHECK(unit == &halved.pipeline.tessellation_tests[0].height_test);
+    CHECK(unit == &halved.machine.tessellation_tests[0].height_test);
 
     const EmittedMesh expected = bare_mesh(equal);
     CHECK(expected.triangles.size() < bare_mesh(setup).triangles.size());
@@ -281,10 +281,10 @@ std::uint64_t expect_same_as_packed(const MachineSetup& setup) {
     const EmittedMesh expected = bare_mesh(setup);
     expect_mesh(packed, expected);
     expect_mesh(own, expected);
-    CHECK(packed.pipeline.displacement_map_reads() == own.pipeline.displacement_map_reads());
+    CHECK(packed.machine.displacement_map_reads() == own.machine.displacement_map_reads());
     if (setup.design.transport == Transport::non_blocking)
         expect_same_cycles(packed, own);
-    return packed.pipeline.displace_vertex.activity().cycles_in(State::blocked);
+    return packed.machine.displace_vertex.activity().cycles_in(State::blocked);
 }
 
 /// Three Tessellation Tests units, a queue that spills, the Highlight Test.
@@ -313,7 +313,7 @@ void expect_same_through_packed_streams(Mode mode) {
     if (mode == Mode::functional)
         return;
     expect_same_cycles(packed_machine, plain_machine);
-    CHECK(packed_machine.pipeline.triangle_queue.spilled() > 0);
+    CHECK(packed_machine.machine.triangle_queue.spilled() > 0);
 }
 
 }  // namespace

@@ -31,15 +31,15 @@ bool is_well_formed(const std::string& text) {
 /// Runs the machine cycle by cycle. Returns all descriptions of units' contents, with digits as #.
 Texts texts_of_every_cycle(const MachineSetup& setup) {
     Simulation simulation(setup, 1'000'000, 1'000'000);
-    Pipeline& pipeline = simulation.pipeline;
+    Machine& machine = simulation.machine;
     Texts texts;
     sc_core::sc_start(sc_core::SC_ZERO_TIME);
-    while (!pipeline.clock.idle()) {
-        sc_core::sc_start(pipeline.clock.period());
+    while (!machine.clock.idle()) {
+        sc_core::sc_start(machine.clock.period());
         bool all_empty = true;
-        for (const Unit* unit : pipeline.units()) {
+        for (const Unit* unit : machine.units()) {
             std::string text = unit->describe_contents();
-            INFO("cycle " << pipeline.clock.last_cycle() << ": " << unit->name() << ": \"" << text << '"');
+            INFO("cycle " << machine.clock.last_cycle() << ": " << unit->name() << ": \"" << text << '"');
             REQUIRE((text.empty() || is_well_formed(text)));
             if (!unit->idle())
                 REQUIRE_FALSE(text.empty());
@@ -48,7 +48,7 @@ Texts texts_of_every_cycle(const MachineSetup& setup) {
                 c = c >= '0' && c <= '9' ? '#' : c;
             texts.insert(unit->basename() + (": " + text));
         }
-        REQUIRE(pipeline.idle() == all_empty);
+        REQUIRE(machine.idle() == all_empty);
     }
     sc_core::sc_report_handler::set_actions(sc_core::SC_ID_NO_SC_START_ACTIVITY_, sc_core::SC_DO_NOTHING);
     run_timed(simulation);
@@ -62,13 +62,13 @@ bool any_contains(const Texts& texts, const std::string& unit, const std::string
     return false;
 }
 
-/// Records the state whenever Pipeline::drained() is notified, with base triangles that become 16 each.
+/// Records the state whenever Machine::drained() is notified, with base triangles that become 16 each.
 struct DrainedWatch : sc_core::sc_module {
-    DrainedWatch(const std::string& name, HostedMachine& machine) : sc_module(name.c_str()), machine_(machine) {
+    DrainedWatch(const std::string& name, HostedMachine& hosted) : sc_module(name.c_str()), hosted_(hosted) {
         SC_HAS_PROCESS(DrainedWatch);
         SC_METHOD(note);
         dont_initialize();
-        sensitive << machine.pipeline.drained();
+        sensitive << hosted.machine.drained();
     }
     unsigned notified = 0;
     bool always_whole = true;  ///< as many frames as notifications were lit, and nothing was in flight
@@ -76,10 +76,10 @@ struct DrainedWatch : sc_core::sc_module {
   private:
     void note() {
         ++notified;
-        always_whole = always_whole && machine_.drained() &&
-                       machine_.rasteriser.triangles() == 16 * machine_.host.total() * notified;
+        always_whole =
+            always_whole && hosted_.drained() && hosted_.rasteriser.triangles() == 16 * hosted_.host.total() * notified;
     }
-    HostedMachine& machine_;
+    HostedMachine& hosted_;
 };
 
 struct Drained {
@@ -111,8 +111,8 @@ const CaseTable<Drained> drained(
                 CHECK(watch->notified == frame);
                 CHECK(watch->always_whole);
             }
-            for (const auto& machine : simulation.machines)
-                machine->host.send_again();
+            for (const auto& hosted : simulation.machines)
+                hosted->host.send_again();
         }
     });
 
@@ -120,20 +120,20 @@ const CaseTable<Drained> drained(
 struct FramelessSource : sc_core::sc_module, CycleProcess {
     StreamOutput<datapath::Triangle> out{"out"};
 
-    FramelessSource(const sc_core::sc_module_name& name, Pipeline& machine, const datapath::Triangle& triangle)
-        : sc_module(name), machine_(machine), triangle_(triangle) {
-        machine.clock.attach(*this);
-        out.clocked_by(machine.clock, *this);
-        out.bind(machine.get_triangle.from_host);
+    FramelessSource(const sc_core::sc_module_name& name, Machine& hosted, const datapath::Triangle& triangle)
+        : sc_module(name), hosted_(hosted), triangle_(triangle) {
+        hosted.clock.attach(*this);
+        out.clocked_by(hosted.clock, *this);
+        out.bind(hosted.get_triangle.from_host);
         SC_HAS_PROCESS(FramelessSource);
-        if (machine.transport() == Transport::blocking)
+        if (hosted.transport() == Transport::blocking)
             SC_THREAD(send);
     }
 
   private:
     void start_of_simulation() override {
-        if (machine_.transport() == Transport::non_blocking)
-            machine_.clock.wake(*this);
+        if (hosted_.transport() == Transport::non_blocking)
+            hosted_.clock.wake(*this);
     }
     void step() override {
         if (!std::exchange(sent_, true))
@@ -143,7 +143,7 @@ struct FramelessSource : sc_core::sc_module, CycleProcess {
         sc_core::sc_time delay = sc_core::SC_ZERO_TIME;
         out->b_transport(triangle_, delay);
     }
-    Pipeline& machine_;
+    Machine& machine_;
     datapath::Triangle triangle_;
     bool sent_ = false;
 };
@@ -159,14 +159,14 @@ const CaseTable<Frameless> frameless("a triangle before any frame is an error th
                                          Job job = one_quad_job();
                                          job.mode = row.mode;
                                          const MachineSetup setup = setup_of(job);
-                                         Pipeline pipeline("pipeline", setup.registers, setup.design);
-                                         Rasteriser rasteriser("rasteriser", pipeline.clock, {});
-                                         pipeline.lighting.to_rasteriser.bind(rasteriser.from_lighting);
-                                         const FramelessSource source("source", pipeline, setup.base_triangles.front());
+                                         Machine machine("pipeline", setup.registers, setup.design);
+                                         Rasteriser rasteriser("rasteriser", machine.clock, {});
+                                         machine.lighting.to_rasteriser.bind(rasteriser.from_lighting);
+                                         const FramelessSource source("source", machine, setup.base_triangles.front());
                                          CHECK_THAT(error_of([] { sc_core::sc_start(); }),
                                                     Contains("pipeline.get_triangle: a triangle outside a frame: "
-                                                             "call Pipeline::begin_frame()"));
-                                         CHECK(pipeline.get_triangle.host_triangles() == 0);
+                                                             "call Machine::begin_frame()"));
+                                         CHECK(machine.get_triangle.host_triangles() == 0);
                                      });
 
 struct Row {
@@ -251,14 +251,14 @@ TEST_CASE("drained: not notified in a deadlock") {
 
 TEST_CASE("a table's row that no memory accepts is an error") {
     const MachineSetup setup = setup_of(one_quad_job());
-    Pipeline pipeline("pipeline", setup.registers, setup.design);
-    Rasteriser rasteriser("rasteriser", pipeline.clock, {});
-    Host host("host", pipeline, setup.base_triangles, [&](const TableWriter& write) {
+    Machine machine("pipeline", setup.registers, setup.design);
+    Rasteriser rasteriser("rasteriser", machine.clock, {});
+    Host host("host", machine, setup.base_triangles, [&](const TableWriter& write) {
         const std::array<unsigned char, 4> row{};
         write(setup.registers.displacement_map.base + setup.registers.displacement_map.bytes(), row.data(), row.size());
     });
     host.bind();
-    pipeline.lighting.to_rasteriser.bind(rasteriser.from_lighting);
+    machine.lighting.to_rasteriser.bind(rasteriser.from_lighting);
     CHECK_THAT(error_of([] { sc_core::sc_start(); }),
                Contains("displace_vertex.displacement_map: the memory that this port reads does not take the table's "
                         "bytes by debug transport"));

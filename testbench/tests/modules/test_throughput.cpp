@@ -44,24 +44,24 @@ MachineSetup full_split(const std::string& settings = "") {
 struct FullSplitRun : TimedRun {
     explicit FullSplitRun(const std::string& settings = "") : FullSplitRun(full_split(settings)) {}
     explicit FullSplitRun(MachineSetup its_setup) : TimedRun(std::move(its_setup)) {
-        REQUIRE(pipeline.pass_or_tessellate.counts().passes == passes);
-        REQUIRE(pipeline.pass_or_tessellate.counts().finished == finished);
-        REQUIRE(pipeline.get_triangle.parts_sent() == parts);
+        REQUIRE(machine.pass_or_tessellate.counts().passes == passes);
+        REQUIRE(machine.pass_or_tessellate.counts().finished == finished);
+        REQUIRE(machine.get_triangle.parts_sent() == parts);
         // No rectangle wraps: four entries each.
-        const datapath::HeightTestFunctions& test = functions_of(pipeline.registers().formats.height_test);
+        const datapath::HeightTestFunctions& test = functions_of(machine.registers().formats.height_test);
         const Decisions::Evaluated& evaluated = decisions.evaluated();
-        REQUIRE(pipeline.height_table.transactions() ==
+        REQUIRE(machine.height_table.transactions() ==
                 test.requests * (test.rectangles ? 4 : 1) *
                     (evaluated.summed_height - evaluated.summed_height_by_codes));
     }
 };
 
 void require_sole_bottleneck(const Simulation& simulation, const Unit* unit) {
-    CHECK(find_bottleneck(simulation.pipeline, simulation.cycles()).first.units == std::vector<const Unit*>{unit});
+    CHECK(find_bottleneck(simulation.machine, simulation.cycles()).first.units == std::vector<const Unit*>{unit});
 }
 
-const Unit& unit_named(const Pipeline& pipeline, const std::string& name) {
-    const auto units = pipeline.units();
+const Unit& unit_named(const Machine& machine, const std::string& name) {
+    const auto units = machine.units();
     return **std::find_if(units.begin(), units.end(), [&](const Unit* unit) { return unit->basename() == name; });
 }
 
@@ -161,7 +161,7 @@ const CaseTable rates(
         FullSplitRun simulation(row.settings);
         CHECK(simulation.cycles() >= row.least);
         CHECK(simulation.cycles() <= row.most);
-        const Pipeline& p = simulation.pipeline;
+        const Machine& p = simulation.machine;
         CHECK(p.tessellation.children() == passes - base);
         const Unit& unit = unit_named(p, row.unit);
         if (row.occupied != any)
@@ -215,13 +215,13 @@ const CaseTable intervals(
         constexpr std::uint64_t interval = 40;
         const std::string unit_name = row.name.substr(0, row.name.find(','));
         TimedRun simulation(full_split("hardware.design=modern timing." + unit_name + "_interval=40 " + row.settings));
-        CHECK(simulation.pipeline.pass_or_tessellate.counts().finished == finished);
+        CHECK(simulation.machine.pass_or_tessellate.counts().finished == finished);
         CHECK(simulation.cycles() >= interval * (row.items - 1));
         CHECK(simulation.cycles() <= interval * row.items + row.idle);
         std::uint64_t most = 0;
-        for (const Unit* unit : simulation.pipeline.units())
+        for (const Unit* unit : simulation.machine.units())
             if (std::string(unit->basename()).rfind(unit_name, 0) == 0 ||
-                (unit_name == height_test_unit && unit == &simulation.pipeline.tessellation_tests[0].height_test))
+                (unit_name == height_test_unit && unit == &simulation.machine.tessellation_tests[0].height_test))
                 most = std::max(most, unit->occupied_cycles());
         CHECK(most == interval * row.items);
     });
@@ -233,7 +233,7 @@ const CaseTable intervals(
 // From then on the next triangle's edges wait when one is complete.
 TEST_CASE("the paper's design is bound by the Summed Height Table: 36 cycles a pass") {
     FullSplitRun simulation;
-    const Pipeline& p = simulation.pipeline;
+    const Machine& p = simulation.machine;
     CHECK(simulation.cycles() == fill + 3 + 36 * passes + drain);
     CHECK(p.height_table.activity().cycles_in(State::busy) == 36 * passes);
     CHECK(p.height_table.occupied_cycles() == 36 * passes);
@@ -248,10 +248,10 @@ TEST_CASE("the paper's design is bound by the Summed Height Table: 36 cycles a p
 TEST_CASE("two machines of the paper's design: each does half the passes, in half the cycles") {
     TimedRun simulation(full_split("hardware.machines=2"));
     REQUIRE(simulation.machines.size() == 2);
-    for (const auto& machine : simulation.machines) {
-        CHECK(machine->host.sent() == base / 2);
-        CHECK(machine->pipeline.pass_or_tessellate.counts().passes == passes / 2);
-        CHECK(machine->pipeline.clock.last_cycle() + 1 == fill + 3 + 36 * passes / 2 + drain);
+    for (const auto& hosted : simulation.machines) {
+        CHECK(hosted->host.sent() == base / 2);
+        CHECK(hosted->machine.pass_or_tessellate.counts().passes == passes / 2);
+        CHECK(hosted->machine.clock.last_cycle() + 1 == fill + 3 + 36 * passes / 2 + drain);
     }
     CHECK(simulation.cycles() == fill + 3 + 36 * passes / 2 + drain);
     CHECK(simulation.sent() == base);
@@ -268,7 +268,7 @@ TEST_CASE("two machines of the paper's design: each does half the passes, in hal
 // Eight triangles may be in flight at the join, so at most one per 400 / 8 cycles, where the tests take nine.
 TEST_CASE("the join waits for a Transform of latency 400") {
     FullSplitRun simulation("timing.summed_height_table_ports=4 timing.transform_latency=400");
-    const Pipeline& p = simulation.pipeline;
+    const Machine& p = simulation.machine;
     std::uint64_t for_transform = 0;
     for (const Activity::Share& share : p.pass_or_tessellate.activity().shares())
         for_transform += share.by == &p.transform && share.state == State::starved ? share.cycles : 0;
@@ -282,7 +282,7 @@ TEST_CASE("bank conflicts are a bottleneck even if most ports are idle") {
     setup.design.timing.summed_height_table.banks = setup.registers.height_table.columns / 5;
     REQUIRE(setup.registers.height_table.columns == 5 * 53);
     FullSplitRun simulation(setup);
-    const TableMemory& table = simulation.pipeline.height_table;
+    const TableMemory& table = simulation.machine.height_table;
     CHECK(table.slots_taken() < table.slots_per_cycle() * simulation.cycles() / 5);
     CHECK(simulation.cycles() > 10 * passes);
     CHECK(table.occupied_cycles() == table.cycles_held_up());
@@ -293,7 +293,7 @@ TEST_CASE("a unit that waits for its long interval counts as the bottleneck") {
     FullSplitRun simulation(
         "timing.displace_vertex_latency=1 timing.displace_vertex_interval=100 "
         "timing.pass_or_tessellate_interval=50");
-    const Pipeline& p = simulation.pipeline;
+    const Machine& p = simulation.machine;
     CHECK(p.displace_vertex.activity().cycles_in(State::busy) +
               p.displace_vertex.activity().cycles_in(State::waiting_for_memory) >
           simulation.cycles() * 9 / 10);
@@ -304,7 +304,7 @@ TEST_CASE("a unit that waits for its long interval counts as the bottleneck") {
 // mean occupancy = throughput * latency.
 TEST_CASE("mean occupancy is throughput times latency in units that are never blocked") {
     FullSplitRun simulation;
-    const Pipeline& p = simulation.pipeline;
+    const Machine& p = simulation.machine;
     const auto expect = [](const Unit& unit, std::uint64_t item_cycles) {
         INFO(unit.name());
         REQUIRE(unit.activity().cycles_in(State::blocked) == 0);

@@ -25,7 +25,7 @@ void expect_drained_in_last_cycle(const NamedMachine& machine) {
     INFO(machine.name());
     REQUIRE(machine.drained.size() == 1);
     CHECK(machine.drained[0] ==
-          machine.pipeline.clock.period() * static_cast<double>(machine.pipeline.clock.last_cycle()));
+          machine.machine.clock.period() * static_cast<double>(machine.machine.clock.last_cycle()));
 }
 
 struct EdgeCounter : sc_core::sc_module {
@@ -61,9 +61,9 @@ TEST_CASE("three machines: one with 5 ns, one with 3.2 ns and three Tessellation
         expect_bare_mesh(*machine);
     CHECK(slow.cycles() == default_result.cycles);
     CHECK(fast.cycles() == fast_alone.cycles);
-    CHECK(functional.pipeline.clock.last_cycle() == 0);
-    CHECK(slow.pipeline.clock.period() == sc_core::sc_time(5000, sc_core::SC_PS));
-    CHECK(fast.pipeline.clock.period() == sc_core::sc_time(3200, sc_core::SC_PS));
+    CHECK(functional.machine.clock.last_cycle() == 0);
+    CHECK(slow.machine.clock.period() == sc_core::sc_time(5000, sc_core::SC_PS));
+    CHECK(fast.machine.clock.period() == sc_core::sc_time(3200, sc_core::SC_PS));
     expect_drained_in_last_cycle(slow);
     expect_drained_in_last_cycle(fast);
     CHECK(fast.drained[0].value() == fast_alone.drained);
@@ -82,15 +82,15 @@ TEST_CASE("two machines: a queue that overflows, or stalls, stops only its own m
     NamedMachine stalling("stalling", stall_setup);
     NamedMachine sound("sound", sound_setup);
     sc_core::sc_start();
-    CHECK(overflowing.pipeline.triangle_queue.overflowed());
-    CHECK(overflowing.pipeline.clock.halted());
-    CHECK_FALSE(stalling.pipeline.clock.halted());
-    CHECK_FALSE(stalling.pipeline.idle());
+    CHECK(overflowing.machine.triangle_queue.overflowed());
+    CHECK(overflowing.machine.clock.halted());
+    CHECK_FALSE(stalling.machine.clock.halted());
+    CHECK_FALSE(stalling.machine.idle());
     for (const NamedMachine* stuck : {&overflowing, &stalling}) {
         INFO(stuck->name());
         CHECK_FALSE(stuck->finished());
         CHECK(stuck->drained.empty());
-        CHECK(stuck->cycles() * stuck->pipeline.clock.period().value() < alone.drained);
+        CHECK(stuck->cycles() * stuck->machine.clock.period().value() < alone.drained);
     }
     expect_bare_mesh(sound);
     CHECK(sound.cycles() == alone.cycles);
@@ -107,11 +107,11 @@ TEST_CASE("two machines: cycles begin at the rising edges of the platform's cloc
     const EdgeCounter first_edges("first_edges", rises), second_edges("second_edges", falls);
     for (const auto& [machine, edges] : {std::pair{&first, &first_edges}, {&second, &second_edges}}) {
         while (machine->drained.empty())
-            sc_core::sc_start(machine->pipeline.clock.period());
+            sc_core::sc_start(machine->machine.clock.period());
         CHECK(machine->cycles() == default_result.cycles);
         expect_bare_mesh(*machine);
         const sc_core::sc_time since = sc_core::sc_time_stamp() - machine->drained[0];
-        CHECK(edges->edges - static_cast<std::uint64_t>(since / machine->pipeline.clock.period()) ==
+        CHECK(edges->edges - static_cast<std::uint64_t>(since / machine->machine.clock.period()) ==
               default_result.cycles);
     }
     CHECK(first.drained[0] ==

@@ -1,7 +1,7 @@
 #pragma once
 #include <memory>
 
-#include "modules/pipeline.h"
+#include "modules/machine.h"
 
 namespace tessera::testing {
 

@@ -20,9 +20,9 @@ struct CheckedRun {
         simulation.observe_decisions(scoreboard);
         observe(simulation, transport);
         run_to_the_end(simulation);
-        for (const auto& machine : simulation.machines) {
-            machine->pipeline.pass_or_tessellate.decided.unbind(scoreboard);
-            machine->pipeline.tessellation.inserted.unbind(scoreboard);
+        for (const auto& hosted : simulation.machines) {
+            hosted->machine.pass_or_tessellate.decided.unbind(scoreboard);
+            hosted->machine.tessellation.inserted.unbind(scoreboard);
         }
         const Totals totals(simulation);
         counts = totals.counts;
@@ -54,7 +54,7 @@ struct CheckedRun {
     const MachineSetup setup;
     TransportCheck transport{setup.registers, setup.base_triangles};
     Simulation simulation;
-    const Pipeline& pipeline = simulation.pipeline;
+    const Machine& machine = simulation.machine;
     const EmittedMesh& mesh = simulation.monitor.mesh;
     DecidingUnit::Counts counts;  // of all machines
     ConformanceResult conformance;

@@ -64,12 +64,12 @@ class HandMadeRun {
     }
     void bring_parts(TakenTriangle taken) {
         sc_core::sc_time delay;
-        simulation.pipeline.get_triangle.to_join.transport(taken, delay);
+        simulation.machine.get_triangle.to_join.transport(taken, delay);
         for (std::uint8_t part = 0; part < 9; ++part) {
             DisplacedPoint point;
             point.tag.part = part;
             if ((parts_of(taken.triangle) & point.tag.bit()) != 0)
-                simulation.pipeline.displace_vertex.to_transform.transport(point, delay);
+                simulation.machine.displace_vertex.to_transform.transport(point, delay);
         }
     }
     void decide(std::initializer_list<unsigned> tests) {
@@ -81,7 +81,7 @@ class HandMadeRun {
             edge.found.tests = static_cast<std::uint8_t>(bits);
             edge.found.evaluated = datapath::all_tests;
             sc_core::sc_time delay;
-            simulation.pipeline.tessellation_tests[0].collector.tested_edges().transport(edge, delay);
+            simulation.machine.tessellation_tests[0].collector.tested_edges().transport(edge, delay);
         }
     }
     void fetch_normals(bool turned_away) {

@@ -96,7 +96,7 @@ inline void require_conservation(const Simulation& simulation) {
 }
 
 /// Adds the units that a triangle's parts reach, from this one on, before they are joined or tested.
-inline void follow_parts(const Pipeline& p, const sc_core::sc_object& unit, std::set<std::string>& units) {
+inline void follow_parts(const Machine& p, const sc_core::sc_object& unit, std::set<std::string>& units) {
     if (dynamic_cast<const JoiningUnit*>(&unit) != nullptr || unit.get_parent_object() != &p)
         return;
     units.insert(unit.basename());
@@ -108,7 +108,7 @@ inline void follow_parts(const Pipeline& p, const sc_core::sc_object& unit, std:
 
 /// The bound streams lead a triangle's parts through the units that the list of units says, over which
 /// triangles_ahead_of_parts sums.
-inline void require_listed_geometry(const Pipeline& p) {
+inline void require_listed_geometry(const Machine& p) {
     std::set<std::string> bound, listed;
     follow_parts(p, *p.get_triangle.to_calculate_new_p.input()->get_parent_object(), bound);
     for (const UnitSpec& unit : all_units)
@@ -118,13 +118,13 @@ inline void require_listed_geometry(const Pipeline& p) {
 }
 
 /// The items that Tessellation and the height test of a timed machine receive.
-inline void require_timed_conservation(const Simulation& simulation, const HostedMachine& machine) {
-    const Pipeline& p = machine.pipeline;
+inline void require_timed_conservation(const Simulation& simulation, const HostedMachine& hosted) {
+    const Machine& p = hosted.machine;
     require_listed_geometry(p);
     const auto& made = p.tessellation.made_into();
     const std::uint64_t untested = simulation.setup.design.work == Work::family ? p.get_triangle.host_triangles() : 0;
     CHECK(p.tessellation.activity().items_in() == untested + made[1] + made[2] + made[3] + made[4]);
-    const Decisions::Evaluated& evaluated = machine.decisions.evaluated();
+    const Decisions::Evaluated& evaluated = hosted.decisions.evaluated();
     const datapath::Registers& registers = simulation.setup.registers;
     const datapath::HeightTestFunctions& height_test = functions_of(registers.formats.height_test);
     const std::uint64_t requests =
@@ -135,16 +135,16 @@ inline void require_timed_conservation(const Simulation& simulation, const Hoste
         CHECK(p.height_table_reads() >= 4 * requests);
 }
 
-inline void require_timed_identities(const Simulation& simulation, const HostedMachine& machine) {
+inline void require_timed_identities(const Simulation& simulation, const HostedMachine& hosted) {
     require_timed_conservation(simulation, machine);
-    const Pipeline& p = machine.pipeline;
+    const Machine& p = hosted.machine;
     for (const Unit* unit : p.units()) {
         require_cycles_add_up(*unit, simulation.cycles());
         require_empty(*unit);
         INFO(unit->name());
         CHECK(unit->occupied_cycles() < simulation.cycles() + longest_interval(simulation.setup.design.timing));
     }
-    CHECK(machine.drained());
+    CHECK(hosted.drained());
     CHECK(p.clock.idle());
     CHECK_FALSE(p.clock.stalled());
     CHECK(p.passes_under_way() == 0);
@@ -162,8 +162,8 @@ inline void require_timed_identities(const Simulation& simulation, const HostedM
 /// Call after a timed run that drained.
 inline void require_timed_identities(const Simulation& simulation) {
     require_conservation(simulation);
-    for (const auto& machine : simulation.machines)
-        require_timed_identities(simulation, *machine);
+    for (const auto& hosted : simulation.machines)
+        require_timed_identities(simulation, *hosted);
 }
 
 /// Runs the simulation to its end and checks all of the above.
@@ -193,7 +193,7 @@ inline void run_to_the_end(Simulation& simulation) {
         return;
     }
     REQUIRE(simulation.run().empty());
-    CHECK(simulation.pipeline.idle());
+    CHECK(simulation.machine.idle());
     require_conservation(simulation);
 }
 

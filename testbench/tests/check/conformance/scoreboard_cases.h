@@ -85,7 +85,7 @@ enum class Manner {
 struct Case {
     MachineSetup setup;
     GoldenInputs inputs;
-    Machine machine;
+    EdgeMachine machine;
     Manner manner;
 
     static MachineSetup make_setup(Random& random, const datapath::Formats& formats, Manner manner) {
@@ -152,7 +152,7 @@ struct Case {
         : setup(made), inputs(setup), machine(make_machine(setup)), manner(how) {}
     Case(Random& random, const datapath::Formats& formats, Manner how) : Case(make_setup(random, formats, how), how) {}
 
-    static Machine make_machine(MachineSetup& setup) {
+    static EdgeMachine make_machine(MachineSetup& setup) {
         std::vector<datapath::Direction> normals;
         for (std::uint32_t y = 0; y < setup.map.geometry.height; ++y)
             for (std::uint32_t x = 0; x < setup.map.geometry.width; ++x)
@@ -160,7 +160,7 @@ struct Case {
                                              setup.registers.formats.normal));
         const Tables tables = make_tables(
             setup.registers, std::vector<std::uint32_t>(setup.map.codes.begin(), setup.map.codes.end()), normals);
-        return Machine(setup.registers, tables);
+        return EdgeMachine(setup.registers, tables);
     }
 
     datapath::Vertex vertex(Random& random, const datapath::Vertex& neighbour) {

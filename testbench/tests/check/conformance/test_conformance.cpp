@@ -28,13 +28,13 @@ void expect_conformance(const Job& asked, const HeightMap& map) {
     const GoldenInputs inputs(setup);
     Scoreboard scoreboard(setup.registers, inputs);
     Simulation simulation(setup, 1000000);
-    simulation.pipeline.pass_or_tessellate.decided.bind(scoreboard);
+    simulation.machine.pass_or_tessellate.decided.bind(scoreboard);
     REQUIRE(simulation.run().empty());
 
     const ConformanceResult result = scoreboard.result();
     INFO(result.first_mismatch);
     CHECK(result.mismatches == 0);
-    CHECK(result.edges == 3 * simulation.pipeline.pass_or_tessellate.counts().passes);
+    CHECK(result.edges == 3 * simulation.machine.pass_or_tessellate.counts().passes);
     CHECK(result.base_vertices == 3 * setup.base_triangles.size());
     CHECK(result.passed(Job::Check{}.allowed_flips));
 

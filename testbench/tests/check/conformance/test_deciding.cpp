@@ -35,7 +35,7 @@ Decisions::Counts counts_of(const Job& job) {
     REQUIRE(simulation.run().empty());
     const Decisions::Counts& counts = simulation.decisions.counts();
     CHECK(counts.split_by_normal + counts.split_by_summed_height + counts.split_by_both + counts.split_by_highlight ==
-          simulation.pipeline.pass_or_tessellate.counts().edges_split);
+          simulation.machine.pass_or_tessellate.counts().edges_split);
     return counts;
 }
 
@@ -160,8 +160,8 @@ TEST_CASE("deciding: the counters agree with the golden model's evaluations") {
     GoldenCount golden(setup);
     const GoldenInputs inputs(setup);
     Scoreboard scoreboard(setup.registers, inputs);
-    simulation.pipeline.pass_or_tessellate.decided.bind(golden);
-    simulation.pipeline.pass_or_tessellate.decided.bind(scoreboard);
+    simulation.machine.pass_or_tessellate.decided.bind(golden);
+    simulation.machine.pass_or_tessellate.decided.bind(scoreboard);
     REQUIRE(simulation.run().empty());
     REQUIRE(scoreboard.result().flipped_edges == 0);
 

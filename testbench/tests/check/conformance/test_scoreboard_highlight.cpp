@@ -91,7 +91,7 @@ TEST_CASE("Highlight Test: an end's own product is exact, no flip is allowed the
         tests.highlight_cosine = end - 1;
         tests.highlight_normal_threshold = 0;
         const Case exact(c.setup, Manner::tame);
-        Machine machine = exact.machine;
+        EdgeMachine machine = exact.machine;
         const datapath::TrianglePass good = machine.evaluate(pass.triangle);
         if (good.edges[0].displaced_normal == good.triangle.vertices[0].displaced_normal)
             continue;
@@ -111,7 +111,7 @@ TEST_CASE("Highlight Test: only an allowed flip excuses a different split decisi
         tests.normal_test = tests.summed_height_test = false;
         tests.view_test = tests.tex_coord_test = tests.generation_test = false;
         const Case alone(c.setup, Manner::tame);
-        Machine machine = alone.machine;
+        EdgeMachine machine = alone.machine;
         const datapath::TrianglePass good = machine.evaluate(c.pass(random).triangle);
         const datapath::TrianglePass flipped = with_flipped_highlight(good, 2);
         if (test(check(alone, flipped), "HT").allowed_flips == test(check(alone, good), "HT").allowed_flips)

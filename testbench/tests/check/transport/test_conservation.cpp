@@ -226,7 +226,7 @@ TEST_CASE("conservation: triangles sent round for normals and culled triangles b
 
 TEST_CASE("conservation: an extra item in a unit breaks its equation and no other") {
     TimedRun simulation(two_triangles_split_once());
-    Pipeline& p = simulation.pipeline;
+    Machine& p = simulation.machine;
     TessellationTests& tests = p.tessellation_tests[0];
     const std::map<const Unit*, std::string> of_units_with_several_inputs{
         {&p.get_triangle, "triangles in get_triangle = taken by it"},
@@ -247,7 +247,7 @@ TEST_CASE("conservation: an extra item in a unit breaks its equation and no othe
 
 TEST_CASE("conservation: an extra item on a stream breaks its equations") {
     TimedRun simulation(two_triangles_split_once());
-    Pipeline& p = simulation.pipeline;
+    Machine& p = simulation.machine;
     auto point = part_of_it<ScreenPoint>(first_edge_part);
     auto corner = part_of_it<ScreenCorner>(0);
     auto edge = part_of_it<TestedEdge>(first_edge_part);
@@ -275,7 +275,7 @@ TEST_CASE("conservation: an extra item on a stream breaks its equations") {
 
 TEST_CASE("conservation: an extra read breaks its equations") {
     TimedRun simulation(two_triangles_split_once());
-    Pipeline& p = simulation.pipeline;
+    Machine& p = simulation.machine;
     const datapath::Registers& r = simulation.setup.registers;
     sc_core::sc_time delay;
     expect_change("displacement map", simulation,
@@ -307,7 +307,7 @@ TEST_CASE("conservation: each side of the displacement map has its own requests 
                                                 "hardware.height_test=curvature map.width=2 map.height=2 "
                                                 "tests.tex_coord=false"));  // edges of two texels at most
     TimedRun simulation(setup);
-    Pipeline& p = simulation.pipeline;
+    Machine& p = simulation.machine;
     const Equations sides = sides_of(simulation);
     CHECK(sides.at("reads of displacement_map = vertices, midpoints and texels") == Sides{36 + 90, 36 + 90});
     CHECK(sides.at("entries of displacement_map = read by its ports") == Sides{36, 36});
@@ -339,7 +339,7 @@ TEST_CASE("conservation: each side of the displacement map has its own requests 
 // By blocking transport, which does all the work at once.
 TEST_CASE("conservation: an extra transformed vertex and extra decided triangles break their equations") {
     TimedRun simulation(two_triangles_split_once());
-    Pipeline& p = simulation.pipeline;
+    Machine& p = simulation.machine;
 
     TakenTriangle taken = known_triangle();
     taken.triangle.finished = true;
@@ -422,10 +422,10 @@ TEST_CASE("conservation: spilled triangles still off chip do not count as read b
     job.hardware.queue.capacity = 2;
     const MachineSetup setup = setup_of(job);
     Simulation simulation(setup, 10'000);
-    TriangleQueue& queue = simulation.pipeline.triangle_queue;
+    TriangleQueue& queue = simulation.machine.triangle_queue;
     sc_core::sc_start(sc_core::SC_ZERO_TIME);
     while (queue.spilled() < 6 || queue.spilled() == queue.refilled())
-        sc_core::sc_start(simulation.pipeline.clock.period());
+        sc_core::sc_start(simulation.machine.clock.period());
     const Equations halfway = sides_of(simulation);
     const Sides spilled = halfway.at("triangles spilled = refilled");
     CHECK(spilled == Sides{static_cast<std::int64_t>(queue.spilled()), static_cast<std::int64_t>(queue.refilled())});
@@ -455,7 +455,7 @@ TEST_CASE("work check: an equation that does not hold is a violation, named with
     const WorkResult sound = work_result(work, simulation);
     CHECK(sound.passed());
     CHECK(sound.equations == two_triangles_timed().size());
-    simulation.pipeline.lighting.activity().item_in(simulation.cycles());
+    simulation.machine.lighting.activity().item_in(simulation.cycles());
     simulation.monitor.mesh = first_of(simulation.monitor.mesh, 7);
     const WorkResult broken = work_result(work, simulation);
     CHECK(broken.violations == 2);

@@ -25,7 +25,7 @@ void require_work_conserved(const Job& job) {
     const WorkResult result = work_result(work, simulation);
     INFO(result.first_violation);
     CHECK(result.passed());
-    CHECK(result.triangles == simulation.pipeline.pass_or_tessellate.counts().passes);
+    CHECK(result.triangles == simulation.machine.pass_or_tessellate.counts().passes);
     CHECK(result.equations > 10);
 
     // The same, with one triangle more at the rasteriser.

@@ -14,7 +14,7 @@ inline constexpr double texels_per_unit = donut_side / 2.0;
 
 /// The half-donut map on the plane [-1, 1]^2, with scale 1/4 so that it is round; View Test off. Thresholds in the
 /// paper's units: NT a component of the normal, SHT codes times texels.
-inline Machine half_donut_machine(double normal_threshold, double summed_height_threshold) {
+inline EdgeMachine half_donut_machine(double normal_threshold, double summed_height_threshold) {
     const HeightMap map = half_donut_map(donut_side, donut_side);
     datapath::Registers registers;
     registers.map = {donut_side, donut_side, datapath::AddressMode::clamp, datapath::AddressMode::clamp};
@@ -46,7 +46,7 @@ inline Machine half_donut_machine(double normal_threshold, double summed_height_
     registers.tests.view_test = false;
     registers.tests.normal_threshold = static_cast<std::uint32_t>(std::floor(normal_threshold * 16384));
     registers.tests.height_thresholds[0] = static_cast<std::int64_t>(std::floor(summed_height_threshold * 4));
-    return Machine(registers, std::move(tables));
+    return EdgeMachine(registers, std::move(tables));
 }
 
 /// A vertex of this plane at texture coordinates given in texels.

@@ -41,7 +41,7 @@ std::int64_t doubled_area(const Triangle& t) {
 }  // namespace
 
 TEST_CASE("endless case: the Generation Test ends the splits along the triangle's long edge") {
-    Machine machine = half_donut_machine(normal_threshold, summed_height_threshold);
+    EdgeMachine machine = half_donut_machine(normal_threshold, summed_height_threshold);
     const Triangle triangle = endless_triangle();
     WorkList work(machine, {triangle});
     CHECK((machine.evaluate(work.waiting.front()).split & 1) == 0);
@@ -54,7 +54,7 @@ TEST_CASE("endless case: the Generation Test ends the splits along the triangle'
 }
 
 TEST_CASE("endless case: without the Generation Test it never ends, since the machine's state repeats") {
-    Machine machine = half_donut_machine(normal_threshold, summed_height_threshold);
+    EdgeMachine machine = half_donut_machine(normal_threshold, summed_height_threshold);
     machine.registers.tests.generation_test = false;
     machine.registers.formats.generation_bits = 8;
     WorkList work(machine, {endless_triangle()});
@@ -86,7 +86,7 @@ TEST_CASE("endless case: without the Generation Test it never ends, since the ma
 }
 
 TEST_CASE("endless case: the plane of 18 triangles, with the Generation Test and without") {
-    Machine machine = half_donut_machine(normal_threshold, summed_height_threshold);
+    EdgeMachine machine = half_donut_machine(normal_threshold, summed_height_threshold);
     const std::vector<Triangle> base = plane_of_18();
     std::int64_t base_area = 0;
     for (const Triangle& t : base)

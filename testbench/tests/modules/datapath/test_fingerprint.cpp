@@ -61,7 +61,7 @@ TEST_CASE("fingerprint: a hundred thousand random triangles give the recorded bi
     for (auto& row : registers.transform.normal_rows)
         row = {random.integer32(-9000, 9000), random.integer32(-9000, 9000), random.integer32(-9000, 9000)};
     registers.light = {{3000, 5000, 15000}, 51};
-    Machine machine(registers, tables);
+    EdgeMachine machine(registers, tables);
 
     Hash hash;
     for (int k = 0; k < 100'000; ++k) {

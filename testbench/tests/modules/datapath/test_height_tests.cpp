@@ -228,7 +228,7 @@ TEST_CASE("height tests: the bare machine refuses reads that are not as declared
         test.name = name;
         Registers r = registers_of(add_height_test(test));
         Tables tables = make_tables(r, std::vector<std::uint32_t>(48 * 32), {});
-        const Machine machine(r, std::move(tables));
+        const EdgeMachine machine(r, std::move(tables));
         try {
             machine.test_heights(edge_along_u(10, 10, 8));
         } catch (const std::logic_error& error) {

@@ -64,18 +64,18 @@ std::vector<std::uint32_t> random_codes(std::uint32_t width, std::uint32_t heigh
     return codes;
 }
 
-Machine machine_of(std::uint32_t width, std::uint32_t height, AddressMode u, AddressMode v, int bits,
-                   const std::vector<std::uint32_t>& codes) {
+EdgeMachine machine_of(std::uint32_t width, std::uint32_t height, AddressMode u, AddressMode v, int bits,
+                       const std::vector<std::uint32_t>& codes) {
     Registers registers;
     registers.map = {width, height, u, v};
     registers.formats.summed_height = Format::make_unsigned(bits, 0);
     registers.tests.height_thresholds[0] = 0;
     Tables tables = make_tables(registers, codes, std::vector<Direction>(codes.size()));
-    return Machine(registers, std::move(tables));
+    return EdgeMachine(registers, std::move(tables));
 }
 
 /// S of the rectangle about t, from the Summed Height Table.
-std::uint64_t sum_around(const Machine& machine, const TexCoord& t, const RectangleSize& size) {
+std::uint64_t sum_around(const EdgeMachine& machine, const TexCoord& t, const RectangleSize& size) {
     const Registers& r = machine.registers;
     return rectangle_sum(centred_rectangle(t, size, r.map, r.formats), r.map, r.height_table, r.formats,
                          [&](std::uint64_t address) { return machine.height_entry(address - r.height_table.base); });
@@ -86,7 +86,7 @@ void check_sums(std::uint32_t width, std::uint32_t height, int bits, const std::
                 Random& random) {
     for (const AddressMode u : both_modes) {
         for (const AddressMode v : both_modes) {
-            const Machine machine = machine_of(width, height, u, v, bits, codes);
+            const EdgeMachine machine = machine_of(width, height, u, v, bits, codes);
             const MapGeometry& map = machine.registers.map;
             const auto check = [&](std::uint32_t x, std::uint32_t y, const RectangleSize& size) {
                 const TexCoord t{x << 12, y << 12};
@@ -208,8 +208,8 @@ TEST_CASE("rectangles: a constant map never splits, every edge of small maps, an
         for (const std::uint32_t value : {0u, 1u, 40000u, 65535u}) {
             for (const AddressMode u : both_modes) {
                 for (const AddressMode v : both_modes) {
-                    Machine machine = machine_of(width, height, u, v, 32,
-                                                 std::vector<std::uint32_t>(std::size_t{width} * height, value));
+                    EdgeMachine machine = machine_of(width, height, u, v, 32,
+                                                     std::vector<std::uint32_t>(std::size_t{width} * height, value));
                     machine.registers.formats.texture = Format::make_unsigned(14, 1);
                     for (std::uint32_t iu = 0; iu <= 2 * width; ++iu)
                         for (std::uint32_t iv = 0; iv <= 2 * height; ++iv)
@@ -231,7 +231,7 @@ TEST_CASE("rectangles: a constant map never splits, long edges of odd-sized maps
         for (const AddressMode u : both_modes) {
             for (const AddressMode v : both_modes) {
                 for (const int bits : {32, 40}) {
-                    const Machine machine = machine_of(width, height, u, v, bits, codes);
+                    const EdgeMachine machine = machine_of(width, height, u, v, bits, codes);
                     for (int k = 0; k < 20'000; ++k) {
                         const TexCoord i{random.natural(0, width << 12), random.natural(0, height << 12)};
                         const TexCoord j{random.natural(0, width << 12), random.natural(0, height << 12)};
@@ -256,7 +256,7 @@ TEST_CASE("rectangles: with a threshold per area, each axis has its own address 
                 for (std::uint32_t y = 0; y < height; ++y)
                     for (std::uint32_t x = 0; x < width; ++x)
                         codes.push_back(along_u ? x * x : y * y);
-                Machine machine = machine_of(width, height, u, v, 32, codes);
+                EdgeMachine machine = machine_of(width, height, u, v, 32, codes);
                 machine.registers.tests.summed_height_unit = SummedHeightUnit::area;
                 machine.registers.tests.height_thresholds[0] = static_cast<std::int64_t>(threshold);
                 return machine.summed_height({0, 0}, {(along_u ? 8u : 3u) << 12, (along_u ? 3u : 16u) << 12});
@@ -275,7 +275,7 @@ TEST_CASE("rectangles: with a threshold per area, each axis has its own address 
 }
 
 TEST_CASE("rectangles: the largest table address is the last entry") {
-    const Machine machine =
+    const EdgeMachine machine =
         machine_of(5, 3, AddressMode::repeat, AddressMode::clamp, 40, std::vector<std::uint32_t>(15, 1));
     const TableLayout& table = machine.registers.height_table;
     CHECK(table.columns == 6);

@@ -55,7 +55,7 @@ struct NarrowMap {
 
 /// Vertices with a few positions, every texture coordinate of the map and, if it repeats, of a second period, a few
 /// frames, and both handednesses.
-std::vector<Vertex> all_vertices(Machine& machine) {
+std::vector<Vertex> all_vertices(EdgeMachine& machine) {
     const MapGeometry& map = machine.registers.map;
     const std::array<Direction, 4> normals{{{0, 0, 16}, {-16, 0, 0}, {9, 9, -9}, {0, 0, -16}}};
     const std::array<Direction, 2> tangents{{{16, 0, 0}, {0, -11, 11}}};
@@ -102,7 +102,7 @@ TEST_CASE("reversal: every edge of narrow vertices, six tests, decision, inserte
             tests.half_vector = {4, 0, 15};
             tests.highlight_cosine = 150;
             tests.highlight_normal_threshold = 6;
-            Machine machine(registers, std::move(tables));
+            EdgeMachine machine(registers, std::move(tables));
             const DirectMap direct_map(registers.map, map.codes, map.normals);
             const DirectEdge direct(machine.registers, direct_map);
             const std::vector<Vertex> vertices = all_vertices(machine);
@@ -154,7 +154,7 @@ TEST_CASE("reversal: Summed Height Test, every edge on maps of 1 to 4 texels a s
             codes.push_back(random.coin() ? 3 * random.natural(0, 1) : random.natural(0, 3));
         const std::vector<Direction> normals(codes.size(), Direction{0, 0, 16384});
         Tables tables = make_tables(registers, codes, normals);
-        Machine machine(registers, std::move(tables));
+        EdgeMachine machine(registers, std::move(tables));
         const DirectMap direct_map(registers.map, codes, normals);
         const DirectEdge direct(machine.registers, direct_map);
         const auto last = [](std::uint32_t size, AddressMode mode) {

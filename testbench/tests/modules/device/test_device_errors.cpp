@@ -233,7 +233,7 @@ const CaseTable<BenchMode> halted_clock{
             set_frame(driver, setup, places);
             REQUIRE(tessera_start(&driver) == TESSERA_OK);
             cpu.pass(sc_core::sc_time(20, sc_core::SC_US));
-            bench.devices[0]->pipeline().clock.halt();
+            bench.devices[0]->machine().clock.halt();
             CHECK(tessera_wait(&driver, 1000) == static_cast<int>(DeviceError::machine_stopped));
             CHECK(tessera_start(&driver) == static_cast<int>(DeviceError::machine_stopped));
         };

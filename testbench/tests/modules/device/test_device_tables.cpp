@@ -58,7 +58,7 @@ const CaseTable<BenchMode> bridged{
         const LitKeys found = two_frames(bench, setup, places);
         CHECK(found.size() > 100);
         expect_same(found, reference.keys);
-        CHECK(bench.devices[0]->pipeline().height_table.transactions() == 0);
+        CHECK(bench.devices[0]->machine().height_table.transactions() == 0);
     }};
 
 /// Joins some ports to memories of its own.
@@ -198,7 +198,7 @@ const CaseTable<Stubborn> host_refused{
 }  // namespace
 
 TEST_CASE("a client that lets SC_ERRORs pass gets the device's error, and no triangles") {
-    sc_core::sc_report_handler::set_actions("tessera/pipeline", sc_core::SC_ERROR, sc_core::SC_CACHE_REPORT);
+    sc_core::sc_report_handler::set_actions("tessera/machine", sc_core::SC_ERROR, sc_core::SC_CACHE_REPORT);
     const MachineSetup setup = setup_of(small_job(false));
     BridgedUnits units(setup.design.timing, one_stubborn("normal_map", Debug::none));
     Bench bench({formats_of(setup)}, design_of(setup), false, true, {&units});

@@ -44,11 +44,11 @@ const CaseTable<BenchMode> waiting_sink{
     [](const BenchMode& mode) {
         const MachineSetup setup = setup_of(small_job(mode.timed));
         Reference reference("reference", setup);
-        Pipeline pipeline("pipeline", setup.registers, setup.design);
-        Host host("host", pipeline, setup.base_triangles, tables_of(setup));
-        WaitingSink sink("sink", pipeline.clock, setup.design);
+        Machine machine("pipeline", setup.registers, setup.design);
+        Host host("host", machine, setup.base_triangles, tables_of(setup));
+        WaitingSink sink("sink", machine.clock, setup.design);
         host.bind();
-        pipeline.lighting.to_rasteriser.bind(sink.streams.from_lighting);
+        machine.lighting.to_rasteriser.bind(sink.streams.from_lighting);
         sc_core::sc_start();
         LitKeys found;
         for (const LitTriangle& lit : sink.taken) {

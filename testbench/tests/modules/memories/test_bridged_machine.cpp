@@ -28,27 +28,27 @@ namespace {
 /// The machine with such memories, which the host fills.
 struct BridgedMachine {
     BridgedUnits units;
-    Pipeline pipeline;
+    Machine machine;
     Host host;
     Rasteriser rasteriser;
     MeshMonitor monitor;
 
     BridgedMachine(const MachineSetup& setup, BridgedMemory make)
         : units(setup.design.timing, std::move(make)),
-          pipeline("bridged", setup.registers, setup.design, &units),
-          host("bridged_host", pipeline, setup.base_triangles, tables_of(setup)),
-          rasteriser("bridged_rasteriser", pipeline.clock, setup.design.timing.stalls),
+          machine("bridged", setup.registers, setup.design, &units),
+          host("bridged_host", machine, setup.base_triangles, tables_of(setup)),
+          rasteriser("bridged_rasteriser", machine.clock, setup.design.timing.stalls),
           monitor("bridged_monitor", setup.registers.back_face_culling, 1'000'000) {
         host.bind();
-        pipeline.lighting.to_rasteriser.bind(rasteriser.from_lighting);
-        pipeline.pass_or_tessellate.finished.bind(monitor);
+        machine.lighting.to_rasteriser.bind(rasteriser.from_lighting);
+        machine.pass_or_tessellate.finished.bind(monitor);
     }
-    std::uint64_t cycles() const { return pipeline.clock.last_cycle() + 1; }
+    std::uint64_t cycles() const { return machine.clock.last_cycle() + 1; }
     void require_drained() const {
-        CHECK(pipeline.idle());
-        CHECK(pipeline.height_table.transactions() == 0);
-        CHECK(pipeline.displacement_map.transactions() == 0);
-        CHECK(pipeline.off_chip_memory.bytes_written() == 0);
+        CHECK(machine.idle());
+        CHECK(machine.height_table.transactions() == 0);
+        CHECK(machine.displacement_map.transactions() == 0);
+        CHECK(machine.off_chip_memory.bytes_written() == 0);
     }
 };
 
@@ -72,7 +72,7 @@ void expect_same_cycles(const Job& job) {
     CHECK(simulation.run().empty());
     bridged.require_drained();
     CHECK(bridged.cycles() == simulation.cycles());
-    CHECK(bridged.pipeline.triangle_queue.spilled() == simulation.pipeline.triangle_queue.spilled());
+    CHECK(bridged.machine.triangle_queue.spilled() == simulation.machine.triangle_queue.spilled());
     expect_mesh(bridged.monitor.mesh, simulation.monitor.mesh);
     expect_mesh(bridged.monitor.mesh, bare_mesh(setup));
 }
@@ -116,7 +116,7 @@ TEST_CASE("bridged machine: one memory for both sides of the displacement map, t
     BridgedMachine machine(setup, blocking_5_ns);
     sc_core::sc_start();
     machine.require_drained();
-    CHECK(machine.pipeline.displacement_map_for_tests->transactions() == 0);
+    CHECK(machine.machine.displacement_map_for_tests->transactions() == 0);
     expect_mesh(machine.monitor.mesh, bare_mesh(setup));
 }
 
@@ -257,7 +257,7 @@ TEST_CASE("a bridged memory has no limit for its answers if answer_cycles is 0")
         setup, [](BaseProtocolBridge& bridge, const std::string& name) { return bound<SilentMemory>(bridge, name); });
     const Ticker ticker("ticker");
     sc_core::sc_start(sc_core::sc_time(10, sc_core::SC_MS));
-    CHECK_FALSE(machine.pipeline.idle());
+    CHECK_FALSE(machine.machine.idle());
 }
 
 TEST_CASE("a bridged memory that is slow, within the limit, is no error, and the watch ends with the machine") {

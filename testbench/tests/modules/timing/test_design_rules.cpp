@@ -22,7 +22,7 @@ namespace {
 std::string complaint(const std::function<void(Design&, datapath::Formats&)>& change) {
     MachineSetup setup = setup_of(one_quad_job());
     change(setup.design, setup.registers.formats);
-    return error_of([&] { const Pipeline pipeline("machine", setup.registers, setup.design); });
+    return error_of([&] { const Machine machine("machine", setup.registers, setup.design); });
 }
 
 /// Sets each declared number beyond both ends of its range.

@@ -37,7 +37,7 @@ TEST_CASE("time resolution 1 ns: a machine refuses a period of 2.5 ns, and the e
     Job job = full_split_job(1, 1);
     job.timing.cycle_picoseconds = 2500;
     const MachineSetup setup = setup_of(job);
-    CHECK_THAT(error_of([&] { const Pipeline pipeline("machine", setup.registers, setup.design); }),
+    CHECK_THAT(error_of([&] { const Machine machine("machine", setup.registers, setup.design); }),
                Contains("machine: a clock period of 2500 ps"));
 }
 

@@ -32,7 +32,7 @@ namespace {
 
 std::map<std::string, UnitArea> area(const std::string& settings = "") {
     const MachineSetup setup = setup_of(with_settings(timed_job(), settings));
-    const Pipeline machine(sc_core::sc_gen_unique_name("machine"), setup.registers, setup.design);
+    const Machine machine(sc_core::sc_gen_unique_name("machine"), setup.registers, setup.design);
     const std::vector<UnitArea> units = area_of(machine.units());
     std::map<std::string, UnitArea> by_name;
     for (const UnitArea& unit : units)
@@ -241,7 +241,7 @@ TEST_CASE("area: three machines have three times the hardware of one") {
     MachineSetup setup = setup_of(with_settings(timed_job(), "hardware.queue_capacity=40"));
     setup.machines = 3;
     const Simulation three(setup, 1000);
-    const UnitArea all = total_area(area_of(three)), one = total_area(area_of(three.pipeline.units()));
+    const UnitArea all = total_area(area_of(three)), one = total_area(area_of(three.machine.units()));
     CHECK(all.multiplier_count() == 3 * one.multiplier_count());
     CHECK(all.register_bits == 3 * one.register_bits);
     CHECK(all.memory_bits == 3 * one.memory_bits);

@@ -287,7 +287,7 @@ TEST_CASE("statistics: spilled records are read back whole") {
     Job job = full_split_job(1, 2);
     job.hardware.queue.capacity = 2;
     TimedRun simulation(setup_of(job));
-    const double spilled = static_cast<double>(simulation.pipeline.triangle_queue.spilled());
+    const double spilled = static_cast<double>(simulation.machine.triangle_queue.spilled());
     REQUIRE(spilled > 0);
     // 1572 bits per triangle
     figures_of(simulation)

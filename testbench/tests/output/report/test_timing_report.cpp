@@ -20,13 +20,13 @@ namespace {
 constexpr std::uint64_t cycles = 1000;
 
 /// A machine whose units have done nothing.
-struct Machine {
+struct TimedMachine {
     MachineSetup setup;
     Simulation simulation{setup, 1000};
-    Pipeline& pipeline = simulation.pipeline;
-    TessellationTests& tests = pipeline.tessellation_tests[0];
+    Machine& machine = simulation.machine;
+    TessellationTests& tests = machine.tessellation_tests[0];
 
-    explicit Machine(const Job& job = timed_job()) : setup(setup_of(job)) {}
+    explicit TimedMachine(const Job& job = timed_job()) : setup(setup_of(job)) {}
 };
 
 /// `count` items one after another, from cycle `first`, each for one cycle; with an interval of one the unit is
@@ -41,29 +41,29 @@ void work_on(Unit& unit, std::uint64_t count, std::uint64_t first = 0) {
 }  // namespace
 
 TEST_CASE("utilisation: the share of occupied cycles, at most 1") {
-    Machine m;
-    work_on(m.pipeline.transform, 250);
-    CHECK(utilisation(m.pipeline.transform, cycles) == 0.25);
-    CHECK(utilisation(m.pipeline.transform, 200) == 1);
-    CHECK(utilisation(m.pipeline.transform, 0) == 0);
+    TimedMachine m;
+    work_on(m.machine.transform, 250);
+    CHECK(utilisation(m.machine.transform, cycles) == 0.25);
+    CHECK(utilisation(m.machine.transform, 200) == 1);
+    CHECK(utilisation(m.machine.transform, 0) == 0);
 }
 
 TEST_CASE("bottleneck: the next limit names all units within one per cent of it, in pipeline order") {
-    Machine m;
-    work_on(m.pipeline.transform, 1000);
+    TimedMachine m;
+    work_on(m.machine.transform, 1000);
     work_on(m.tests.view_test, 400);
     work_on(m.tests.normal_test, 396);  // one percent less
-    work_on(m.pipeline.calculate_new_p, 398);
-    work_on(m.pipeline.displace_vertex, 395);
-    const Bottleneck found = find_bottleneck(m.pipeline, cycles);
+    work_on(m.machine.calculate_new_p, 398);
+    work_on(m.machine.displace_vertex, 395);
+    const Bottleneck found = find_bottleneck(m.machine, cycles);
     CHECK(found.binding);
-    CHECK(found.first.units == std::vector<const Unit*>{&m.pipeline.transform});
+    CHECK(found.first.units == std::vector<const Unit*>{&m.machine.transform});
     CHECK(found.first.utilisation == 1);
     CHECK(found.next.units ==
-          std::vector<const Unit*>{&m.pipeline.calculate_new_p, &m.tests.normal_test, &m.tests.view_test});
+          std::vector<const Unit*>{&m.machine.calculate_new_p, &m.tests.normal_test, &m.tests.view_test});
     CHECK(found.next.utilisation == 0.4);
     CHECK(found.bound() == Approx(2.5));
-    CHECK(bottleneck_text(m.pipeline, cycles) ==
+    CHECK(bottleneck_text(m.machine, cycles) ==
           "transform: 100.0 % of its throughput is used; without it at most 2.5 times "
           "faster, bounded by calculate_new_p, tessellation_tests_0.normal_test and "
           "tessellation_tests_0.view_test, which tie at 40.0 %");
@@ -72,30 +72,30 @@ TEST_CASE("bottleneck: the next limit names all units within one per cent of it,
 // The bound is on the run's length, so it depends on the work that remains, not on how far the first limit is ahead:
 // without a unit at 90 % at least half of the cycles remain.
 TEST_CASE("bottleneck: the bound is that of the other units, and the unit that waits longest is named") {
-    Machine m;
-    work_on(m.pipeline.lighting, 900);
-    work_on(m.pipeline.calculate_new_p, 500);
-    Activity& waiting = m.pipeline.pass_or_tessellate.activity();
-    waiting.set(0, State::blocked, &m.pipeline.tessellation);
-    waiting.set(500, State::blocked, &m.pipeline.lighting);
+    TimedMachine m;
+    work_on(m.machine.lighting, 900);
+    work_on(m.machine.calculate_new_p, 500);
+    Activity& waiting = m.machine.pass_or_tessellate.activity();
+    waiting.set(0, State::blocked, &m.machine.tessellation);
+    waiting.set(500, State::blocked, &m.machine.lighting);
     waiting.finish(800);
-    Activity& less = m.pipeline.get_triangle.activity();
-    less.set(0, State::blocked, &m.pipeline.lighting);
+    Activity& less = m.machine.get_triangle.activity();
+    less.set(0, State::blocked, &m.machine.lighting);
     less.finish(299);
-    CHECK(bottleneck_text(m.pipeline, cycles) ==
+    CHECK(bottleneck_text(m.machine, cycles) ==
           "lighting: 90.0 % of its throughput is used; pass_or_tessellate is delayed by it in "
           "30.0 % of all cycles; without it at most 2.0 times faster, bounded by calculate_new_p, at 50.0 %");
 }
 
 TEST_CASE("bottleneck: units that tie bind together") {
-    Machine m;
-    work_on(m.pipeline.calculate_new_p, 1000);
-    work_on(m.pipeline.transform, 995);
-    work_on(m.pipeline.lighting, 100);
-    Activity& get = m.pipeline.get_triangle.activity();
-    get.set(0, State::blocked, &m.pipeline.calculate_new_p);
+    TimedMachine m;
+    work_on(m.machine.calculate_new_p, 1000);
+    work_on(m.machine.transform, 995);
+    work_on(m.machine.lighting, 100);
+    Activity& get = m.machine.get_triangle.activity();
+    get.set(0, State::blocked, &m.machine.calculate_new_p);
     get.finish(700);
-    CHECK(bottleneck_text(m.pipeline, cycles) ==
+    CHECK(bottleneck_text(m.machine, cycles) ==
           "calculate_new_p and transform, which tie: 100.0 % of their throughput is used; "
           "get_triangle is delayed by calculate_new_p in 70.0 % of all cycles; without them at most 10.0 "
           "times faster, bounded by "
@@ -103,29 +103,29 @@ TEST_CASE("bottleneck: units that tie bind together") {
 }
 
 TEST_CASE("bottleneck: the only unit that worked has no next limit") {
-    Machine m;
-    work_on(m.pipeline.lighting, 1000);
-    CHECK(find_bottleneck(m.pipeline, cycles).bound() == 0);
-    CHECK(bottleneck_text(m.pipeline, cycles) == "lighting: 100.0 % of its throughput is used");
+    TimedMachine m;
+    work_on(m.machine.lighting, 1000);
+    CHECK(find_bottleneck(m.machine, cycles).bound() == 0);
+    CHECK(bottleneck_text(m.machine, cycles) == "lighting: 100.0 % of its throughput is used");
 }
 
 TEST_CASE("bottleneck: below 85 % latency binds, and no key is named, since none surely helps") {
-    Machine m;
-    work_on(m.pipeline.lighting, 849);
-    work_on(m.pipeline.calculate_new_p, 845);
-    Activity& transform = m.pipeline.transform.activity();
+    TimedMachine m;
+    work_on(m.machine.lighting, 849);
+    work_on(m.machine.calculate_new_p, 845);
+    Activity& transform = m.machine.transform.activity();
     transform.item_in(0);
     transform.item_out(35);  // longer than in any other stage
     transform.item_in(100);
     transform.item_out(120);
-    Activity& get = m.pipeline.get_triangle.activity();
+    Activity& get = m.machine.get_triangle.activity();
     get.item_in(0);
     get.item_out(900);  // waiting for other units
     SECTION("Get Triangle is starved") {
-        get.set(0, State::blocked, &m.pipeline.calculate_new_p);
+        get.set(0, State::blocked, &m.machine.calculate_new_p);
         get.set(200, State::starved);
         get.finish(cycles);
-        CHECK(bottleneck_text(m.pipeline, cycles) ==
+        CHECK(bottleneck_text(m.machine, cycles) ==
               "none: bound by latency; of the busiest (calculate_new_p and lighting) 84.9 % of the "
               "throughput is "
               "used; at most 1.2 times faster with more triangles in flight "
@@ -133,44 +133,44 @@ TEST_CASE("bottleneck: below 85 % latency binds, and no key is named, since none
               "shorter latencies (an item stays 27.5 cycles in transform)");
     }
     SECTION("Get Triangle is blocked") {
-        get.set(0, State::blocked, &m.pipeline.calculate_new_p);
+        get.set(0, State::blocked, &m.machine.calculate_new_p);
         get.set(600, State::starved);
         get.finish(cycles);
-        CHECK_THAT(bottleneck_text(m.pipeline, cycles), Contains("(get_triangle is blocked 60.0 %)"));
+        CHECK_THAT(bottleneck_text(m.machine, cycles), Contains("(get_triangle is blocked 60.0 %)"));
     }
-    CHECK_FALSE(find_bottleneck(m.pipeline, cycles).binding);
-    work_on(m.pipeline.lighting, 1, 950);
-    CHECK(find_bottleneck(m.pipeline, cycles).binding);
+    CHECK_FALSE(find_bottleneck(m.machine, cycles).binding);
+    work_on(m.machine.lighting, 1, 950);
+    CHECK(find_bottleneck(m.machine, cycles).binding);
 }
 
 TEST_CASE("bottleneck: below 85 %, a unit that waits for a cache most of the time is named") {
     Job job = timed_job();
     job.timing.summed_height_table.cache.bytes = 1024;
-    Machine m(job);
-    work_on(m.pipeline.lighting, 500);
+    TimedMachine m(job);
+    work_on(m.machine.lighting, 500);
     Activity& waiting = m.tests.height_test.activity();
-    waiting.set(0, State::waiting_for_memory, m.pipeline.height_table_cache.get());
-    waiting.set(501, State::waiting_for_memory, &m.pipeline.normal_map);  // less long
+    waiting.set(0, State::waiting_for_memory, m.machine.height_table_cache.get());
+    waiting.set(501, State::waiting_for_memory, &m.machine.normal_map);  // less long
     waiting.finish(600);
-    CHECK_THAT(bottleneck_text(m.pipeline, cycles),
+    CHECK_THAT(bottleneck_text(m.machine, cycles),
                Contains("(tessellation_tests_0.summed_height_test waits for summed_height_table_cache 50.1 %)"));
 }
 
 TEST_CASE("bottleneck: of five units that tie one is named") {
-    Machine m;
-    for (Unit* unit : {static_cast<Unit*>(&m.pipeline.calculate_new_p), static_cast<Unit*>(&m.pipeline.transform),
-                       static_cast<Unit*>(&m.tests.view_test), static_cast<Unit*>(&m.pipeline.lighting)})
+    TimedMachine m;
+    for (Unit* unit : {static_cast<Unit*>(&m.machine.calculate_new_p), static_cast<Unit*>(&m.machine.transform),
+                       static_cast<Unit*>(&m.tests.view_test), static_cast<Unit*>(&m.machine.lighting)})
         work_on(*unit, 100);
-    CHECK(find_bottleneck(m.pipeline, cycles).first.names() ==
+    CHECK(find_bottleneck(m.machine, cycles).first.names() ==
           "calculate_new_p, transform, tessellation_tests_0.view_test and lighting");
     work_on(m.tests.tex_coord_test, 100);
-    CHECK(find_bottleneck(m.pipeline, cycles).first.names() == "calculate_new_p and 4 others");
+    CHECK(find_bottleneck(m.machine, cycles).first.names() == "calculate_new_p and 4 others");
 }
 
 TEST_CASE("bottleneck: an idle machine has none") {
-    Machine m;
-    CHECK(bottleneck_text(m.pipeline, cycles) == "none: no unit was busy");
-    CHECK(find_bottleneck(m.pipeline, cycles).bound() == 0);
+    TimedMachine m;
+    CHECK(bottleneck_text(m.machine, cycles) == "none: no unit was busy");
+    CHECK(find_bottleneck(m.machine, cycles).bound() == 0);
 }
 
 // 12 entries per edge through one port: 36 of the 86 cycles (modules/test_one_triangle.cpp). The bound is the nine
@@ -182,7 +182,7 @@ TEST_CASE("bottleneck of one triangle: latency binds") {
     MachineSetup setup = setup_of(job);
     setup.base_triangles.resize(1);
     TimedRun simulation(setup);
-    const std::string text = bottleneck_text(simulation.pipeline, simulation.cycles());
+    const std::string text = bottleneck_text(simulation.machine, simulation.cycles());
     CHECK_THAT(text, StartsWith("none: bound by latency; of the busiest (summed_height_table) 41.9 % of the "
                                 "throughput is used; at most 2.4 times faster ") &&
                          EndsWith("(an item stays 20.0 cycles in transform)"));
@@ -199,7 +199,7 @@ TEST_CASE("timing of two machines: rows of each, and the bottleneck of the last 
     TimedRun simulation(setup);
     const HostedMachine &first = *simulation.machines[0], &second = *simulation.machines[1];
     CHECK(&simulation.last_machine() == &first);
-    CHECK(second.pipeline.get_triangle.host_triangles() == 0);
+    CHECK(second.machine.get_triangle.host_triangles() == 0);
     std::vector<Figure> figures;
     timing_figures(figures, simulation);
     const auto items = [&](const std::string& unit) {
@@ -209,11 +209,11 @@ TEST_CASE("timing of two machines: rows of each, and the bottleneck of the last 
         return UINT64_MAX;
     };
     CHECK(items("transform") == 9);
-    CHECK(unit_name(second.pipeline.transform) == "tessera_1.transform");
+    CHECK(unit_name(second.machine.transform) == "tessera_1.transform");
     CHECK(items("tessera_1.transform") == 0);
     for (const Figure& figure : figures)
         if (figure.name == "bottleneck_in_words")
-            CHECK(std::get<std::string>(figure.value) == bottleneck_text(first.pipeline, 86));
+            CHECK(std::get<std::string>(figure.value) == bottleneck_text(first.machine, 86));
 }
 
 TEST_CASE("queue_levels.csv: each row has the first cycle of a stretch and its highest level") {

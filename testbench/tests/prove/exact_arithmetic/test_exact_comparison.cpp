@@ -45,7 +45,7 @@ void expect_the_simulation_figures(const Job& job) {
     const GoldenInputs golden(setup);
     Scoreboard scoreboard(setup.registers, golden);
     Simulation simulation(setup, 1'000'000);
-    simulation.pipeline.pass_or_tessellate.decided.bind(scoreboard);
+    simulation.machine.pass_or_tessellate.decided.bind(scoreboard);
     REQUIRE(simulation.run().empty());
     EmittedMesh& mesh = simulation.monitor.mesh;
     mesh.sort();
@@ -54,8 +54,8 @@ void expect_the_simulation_figures(const Job& job) {
     const EndToEndResult end_to_end = compare_end_to_end(setup, golden, mesh);
 
     CHECK(run.triangles == mesh.triangles.size());
-    CHECK(run.edges == simulation.pipeline.edges_tested());
-    CHECK(run.edges_split == simulation.pipeline.pass_or_tessellate.counts().edges_split);
+    CHECK(run.edges == simulation.machine.edges_tested());
+    CHECK(run.edges_split == simulation.machine.pass_or_tessellate.counts().edges_split);
     CHECK(run.conformance.edges == conformance.edges);
     CHECK(run.conformance.base_vertices == conformance.base_vertices);
     CHECK(run.conformance.flipped_edges == conformance.flipped_edges);
@@ -71,7 +71,7 @@ void expect_the_simulation_figures(const Job& job) {
     CHECK(run.invariants.collapsed == invariants.collapsed);
     CHECK(run.end_to_end.golden_triangles == end_to_end.golden_triangles);
     CHECK(run.end_to_end.hardware_to_golden.max_model == end_to_end.hardware_to_golden.max_model);
-    const datapath::Saturations counted = simulation.pipeline.saturations();
+    const datapath::Saturations counted = simulation.machine.saturations();
     CHECK(run.saturations.displaced_position == counted.displaced_position);
     CHECK(run.saturations.normal == counted.normal);
     CHECK(run.saturations.screen_position == counted.screen_position);

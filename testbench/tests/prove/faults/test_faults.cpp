@@ -75,7 +75,7 @@ Outcome run_here(Mode mode, const std::optional<Fault>& fault) {
     Simulation simulation(setup, 5000, 5000, units ? &*units : nullptr);
     Scoreboard scoreboard(setup.registers, golden);
     TransportCheck work(setup.registers, setup.base_triangles);
-    simulation.pipeline.pass_or_tessellate.decided.bind(scoreboard);
+    simulation.machine.pass_or_tessellate.decided.bind(scoreboard);
     observe(simulation, work);
 
     Outcome outcome;

@@ -1,0 +1,225 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "testbench/bake/bake.h"
+#include "testbench/common/error.h"
+#include "testbench/input/mesh/built_in.h"
+#include "testbench/input/mesh/obj_reader.h"
+
+using namespace tessera;
+using Catch::Contains;
+
+namespace {
+
+Surface surface(const std::string& text) {
+    return parse_surface(text, "s.toml");
+}
+
+QuadricSurface sphere(double radius, const glm::dvec3& centre = glm::dvec3(0)) {
+    QuadricSurface result;
+    result.quadric = make_quadric(QuadricShape::ellipsoid, centre, glm::dvec3(radius), 2, 0);
+    result.where = "s.toml:1";
+    return result;
+}
+
+double at(const BakedMap& map, int x, int y) {
+    return map.values[static_cast<std::size_t>(y * map.width + x)];
+}
+
+Job::Map repeat_u() {
+    Job::Map map;
+    map.address_u = Addressing::repeat;
+    return map;
+}
+
+}  // namespace
+
+TEST_CASE("bake: heights are sampled at texel centres of the domain, from the bottom row up") {
+    const BakedMap map = bake_heights(surface("[domain]\nx = [0, 4]\ny = [10, 12]\n[quadric]\nshape = \"general\"\n"
+                                              "coefficients = [0, 0, 0, 0, 0, 0, 1, 100, -1, 0]\n"),
+                                      4, 2);
+    CHECK(map.values == std::vector<double>{1050.5, 1051.5, 1052.5, 1053.5, 1150.5, 1151.5, 1152.5, 1153.5});
+    CHECK(map.absent + map.raised + map.uncovered + map.overlaps == 0);
+}
+
+TEST_CASE("bake: a symmetric surface gives a bit-exactly symmetric map") {
+    const BakedMap map = bake_heights(
+        surface("[domain]\nx = [-0.7, 0.7]\ny = [-0.3, 0.3]\n[quadric]\nshape = \"sphere\"\nradius = 0.9\n"), 37, 22);
+    for (int y = 0; y < 22; ++y)
+        for (int x = 0; x < 37; ++x) {
+            REQUIRE(at(map, x, y) == at(map, 36 - x, y));
+            REQUIRE(at(map, x, y) == at(map, x, 21 - y));
+        }
+}
+
+TEST_CASE("bake: the map has its floor value where the quadric is absent or too low") {
+    const std::string text = "[quadric]\nshape = \"sphere\"\nradius = 0.5\ncentre = [0, 0, 0.1]\n";
+    const BakedMap open = bake_heights(surface(text), 64, 64);
+    double lowest = 1;
+    std::size_t inside = 0;
+    for (int y = 0; y < 64; ++y)
+        for (int x = 0; x < 64; ++x) {
+            const double px = (x + 0.5) / 32 - 1, py = (y + 0.5) / 32 - 1, square = 0.25 - px * px - py * py;
+            if (square < 0)
+                continue;
+            ++inside;
+            CHECK(at(open, x, y) == Approx(0.1 + std::sqrt(square)).epsilon(1e-14));
+            lowest = std::min(lowest, at(open, x, y));
+        }
+    CHECK(open.absent == 64 * 64 - inside);
+    CHECK(open.raised == 0);
+    CHECK(open.floor == lowest);
+    CHECK(at(open, 0, 0) == lowest);
+
+    const BakedMap floored = bake_heights(surface(text + "floor = 0.4\n"), 64, 64);
+    CHECK(floored.floor == 0.4);
+    CHECK(floored.absent == open.absent);
+    std::size_t raised = 0;
+    for (std::size_t k = 0; k < open.values.size(); ++k) {
+        CHECK(floored.values[k] == std::max(0.4, open.values[k]));
+        raised += open.values[k] < 0.4;
+    }
+    CHECK(floored.raised + floored.absent == raised);
+}
+
+TEST_CASE("bake: a quadric without a point over the domain is refused with its line") {
+    CHECK_THROWS_WITH(
+        bake_heights(surface("\n[quadric]\nshape = \"sphere\"\nradius = 0.1\ncentre = [5, 0, 0]\n"), 8, 8),
+        Contains("s.toml:2: the quadric was not found: none of 8 x 8"));
+    CHECK_THROWS_AS(bake_over_mesh(sphere(0.1, {9, 9, 9}), make_plane(1, 1, 2, 2), {}, 4, 4), InputError);
+}
+
+TEST_CASE("bake: over a plane, a quadric along the normals is its height") {
+    const BaseMesh plane = make_plane(3, 5, 2, 2);
+    const BakedMap over = bake_over_mesh(sphere(3, {0.2, 0.1, -1}), plane, {}, 50, 40);
+    const BakedMap heights =
+        bake_heights(surface("[quadric]\nshape = \"sphere\"\nradius = 3\ncentre = [0.2, 0.1, -1]\n"), 50, 40);
+    CHECK(over.uncovered + over.overlaps + over.absent == 0);
+    for (std::size_t k = 0; k < over.values.size(); ++k)
+        REQUIRE(over.values[k] == Approx(heights.values[k]).epsilon(1e-13));
+}
+
+TEST_CASE("bake: over a cylinder, every texel displaces its point onto the sphere") {
+    const int columns = 7, width = 96, height = 32;
+    const double radius = 1.5;
+    const glm::dvec3 centre(0.2, -0.1, 0.15);
+    const BakedMap map =
+        bake_over_mesh(sphere(radius, centre), make_cylinder(columns, 3, 1, 2), repeat_u(), width, height);
+    CHECK(map.uncovered + map.overlaps + map.absent == 0);
+    const double pi = std::acos(-1.0);
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            // Base point and normal on the chord between two columns, computed without the mesh.
+            const double u = (x + 0.5) / width * columns, z = 2 * (y + 0.5) / height - 1;
+            const double from = std::floor(u), part = u - from;
+            const auto around = [&](double column) {
+                const double angle = 2 * pi * column / columns;
+                return glm::dvec3(-std::sin(angle), std::cos(angle), 0);
+            };
+            const glm::dvec3 p = (1 - part) * around(from) + part * around(from + 1) + glm::dvec3(0, 0, z);
+            const glm::dvec3 n = glm::normalize(glm::dvec3(p.x, p.y, 0));
+            REQUIRE(std::abs(glm::length(p + at(map, x, y) * n - centre) - radius) < 1e-13);
+            REQUIRE(std::abs(at(map, x, y)) < 1);  // the nearer root; the other is across the cylinder
+        }
+}
+
+TEST_CASE("bake: root chooses between the two sides of a quadric") {
+    QuadricSurface ball = sphere(2, {0, 0, 0.5});
+    const BaseMesh plane = make_plane(1, 1, 2, 2);
+    const auto centre = [&](Root root) {
+        ball.root = root;
+        return at(bake_over_mesh(ball, plane, {}, 1, 1), 0, 0);
+    };
+    CHECK(centre(Root::highest) == Approx(2.5));
+    CHECK(centre(Root::lowest) == Approx(-1.5));
+    CHECK(centre(Root::nearest) == Approx(-1.5));
+}
+
+TEST_CASE("bake: texels without a triangle take the value of the nearest covered texel, across borders that repeat") {
+    // One triangle over the lower left part; its plane is z = 0, and texture = position.
+    const std::string text =
+        "v 0 0 0\nv 0.5 0 0\nv 0 0.5 0\nvt 0 0\nvt 0.5 0\nvt 0 0.5\nvn 0 0 1\nf 1/1/1 2/2/1 3/3/1\n";
+    const BaseMesh mesh = parse_obj(text, "t.obj");
+    QuadricSurface ramp;  // z = x + 10 y
+    ramp.quadric = {{0, 0, 0}, glm::dmat3(0), {1, 10, -1}, 0};
+    const BakedMap map = bake_over_mesh(ramp, mesh, {}, 4, 4);
+    // Centres inside: (0,0), (1,0), (0,1); the last two lie on the long edge.
+    CHECK(map.uncovered == 13);
+    CHECK(at(map, 0, 0) == Approx(1.375));
+    CHECK(at(map, 1, 0) == Approx(1.625));
+    CHECK(at(map, 0, 1) == Approx(3.875));
+    CHECK(at(map, 3, 0) == at(map, 1, 0));
+    CHECK(at(map, 0, 3) == at(map, 0, 1));
+    const BakedMap repeated = bake_over_mesh(ramp, mesh, repeat_u(), 4, 4);
+    CHECK(at(repeated, 3, 0) == at(repeated, 0, 0));
+    CHECK(at(repeated, 2, 0) == at(repeated, 1, 0));
+}
+
+TEST_CASE(
+    "bake: a mesh across the map's borders gives its values to the texels that the address mode selects, on either axis") {
+    // A plane z = 0 whose texture coordinates are its positions, from -1/4 to 3/4 and from 5/4 to 9/4.
+    const std::string text =
+        "v -0.25 1.25 0\nv 0.75 1.25 0\nv 0.75 2.25 0\nv -0.25 2.25 0\n"
+        "vt -0.25 1.25\nvt 0.75 1.25\nvt 0.75 2.25\nvt -0.25 2.25\nvn 0 0 1\nf 1/1/1 2/2/1 3/3/1 4/4/1\n";
+    const BaseMesh mesh = parse_obj(text, "t.obj");
+    QuadricSurface ramp;  // z = x + 10 y
+    ramp.quadric = {{0, 0, 0}, glm::dmat3(0), {1, 10, -1}, 0};
+    const auto [width, height] = GENERATE(table<int, int>({{4, 4}, {8, 4}, {4, 12}}));
+    Job::Map both;
+    both.address_u = both.address_v = Addressing::repeat;
+    const BakedMap map = bake_over_mesh(ramp, mesh, both, width, height);
+    CHECK(map.uncovered == 0);
+    CHECK(map.overlaps == 0);
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            INFO(x << ' ' << y);
+            const double u = (x + 0.5) / width, v = (y + 0.5) / height;
+            CHECK(at(map, x, y) == Approx((u < 0.75 ? u : u - 1) + 10 * (v < 0.25 ? v + 2 : v + 1)));
+        }
+}
+
+TEST_CASE("bake: values spread across the borders that repeat, on either axis") {
+    const BaseMesh mesh = parse_obj(
+        "v 0 0 0\nv 0.5 0 0\nv 0 0.5 0\nvt 0 0\nvt 0.5 0\nvt 0 0.5\nvn 0 0 1\nf 1/1/1 2/2/1 3/3/1\n", "t.obj");
+    QuadricSurface ramp;
+    ramp.quadric = {{0, 0, 0}, glm::dmat3(0), {1, 10, -1}, 0};
+    for (const bool along_u : {true, false}) {
+        Job::Map addressing;
+        (along_u ? addressing.address_u : addressing.address_v) = Addressing::repeat;
+        const BakedMap map = bake_over_mesh(ramp, mesh, addressing, 4, 4);
+        // Texel 3 is beside texel 0 if the axis repeats, else two beside texel 1.
+        CHECK(at(map, 3, 0) == at(map, along_u ? 0 : 1, 0));
+        CHECK(at(map, 0, 3) == at(map, 0, along_u ? 1 : 0));
+    }
+}
+
+TEST_CASE("bake: of overlapping triangles the first is used, and the overlap is reported") {
+    // Two sheets with the same texture coordinates, the second higher.
+    const std::string sheets =
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
+        "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvn 0 0 1\n"
+        "f 1/1/1 2/2/1 3/3/1 4/4/1\nf 5/1/1 6/2/1 7/3/1 8/4/1\n";
+    const BakedMap map = bake_over_mesh(sphere(9), parse_obj(sheets, "t.obj"), {}, 5, 4);
+    CHECK(map.overlaps >= 16);  // texels on the diagonals are on borders only
+    CHECK(map.overlaps <= 20);
+    for (const double value : map.values)
+        CHECK(value > 8.8);  // from z = 0
+    // A mesh that covers the repeated map twice has every texel in two triangles.
+    BaseMesh twice = make_plane(2, 1, 4, 2);
+    for (BaseVertex& v : twice.vertices)
+        v.texture.x = 2 * v.texture.x - 1;
+    CHECK(bake_over_mesh(sphere(9), twice, repeat_u(), 9, 4).overlaps > 30);
+    CHECK(bake_over_mesh(sphere(9), make_plane(7, 3, 2, 2), {}, 33, 33).overlaps == 0);
+}
+
+TEST_CASE("bake: meshes that cannot be baked onto are refused") {
+    BaseMesh pointlike = make_plane(1, 1, 2, 2);
+    for (BaseVertex& v : pointlike.vertices)
+        v.texture *= 0.1;
+    CHECK_THROWS_WITH(bake_over_mesh(sphere(9), pointlike, {}, 2, 2), Contains("no texel's centre lies in a triangle"));
+    BaseMesh endless = make_plane(1, 1, 2, 2);
+    for (BaseVertex& v : endless.vertices)
+        v.texture *= 1e6;
+    CHECK_THROWS_AS(bake_over_mesh(sphere(9), endless, repeat_u(), 256, 256), ResourceError);
+    CHECK(bake_over_mesh(sphere(9), endless, {}, 256, 256).uncovered == 0);  // set to the borders
+}
