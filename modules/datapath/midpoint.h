@@ -19,7 +19,7 @@ static_assert(fits_every_format<MidpointWidths>());
 /// Add, arithmetic shift right by 1 (paper 3): rounded towards minus infinity, error -1/2..0 LSB.
 /// Commutative. The result lies between the operands, so it cannot overflow their format. (Decision: t is rounded down,
 /// too, for an adder and a shift. A midpoint on a texel's border may then fall into the texel before, if the format
-/// cannot represent the base coordinates (testbench/explore/README.md). The golden model's own run rounds t
+/// cannot represent the base coordinates (testbench/tune/README.md). The golden model's own run rounds t
 /// likewise, so that the meshes agree: +0.07 % triangles at 256 x 256.)
 constexpr std::int32_t midpoint(std::int32_t a, std::int32_t b) {
     return static_cast<std::int32_t>((std::int64_t{a} + std::int64_t{b}) >> 1);

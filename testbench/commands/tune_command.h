@@ -27,7 +27,7 @@ struct TuneOrder {
     unsigned jobs = 1;
 };
 
-/// Searches (explore/thresholds/tune.h), runs functional mode with the result, measures its mesh as `tessera compare`
+/// Searches (tune/tune.h), runs functional mode with the result, measures its mesh as `tessera compare`
 /// does, writes the tuned job, a .json of the same name and, for a lattice, the base mesh as .obj. Writes nothing on
 /// failure. Throws InputError on wrong usage and on goals that cannot be met.
 ExitCode tune_command(const TuneOrder& order, const std::filesystem::path& data_folder);
