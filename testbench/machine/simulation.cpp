@@ -98,40 +98,40 @@ std::string Simulation::run() {
     return stuck();
 }
 
-void Simulation::check_limits(const Machine& machine) const {
-    if (machine.clock.out_of_time())
+void Simulation::check_limits(const Machine& one) const {
+    if (one.clock.out_of_time())
         throw ResourceError(
             fmt::format("timing.clock_period = {} ps: after cycle {} simulated time ends, at 2^64 - 1 ps; lower the "
                         "period, which changes only the figures in seconds, or the latencies under [timing]",
-                        setup.design.timing.cycle_picoseconds, machine.clock.last_cycle()));
+                        setup.design.timing.cycle_picoseconds, one.clock.last_cycle()));
     const char* const fewer =
         setup.design.queue.order == TriangleOrder::fifo ? "; with hardware.queue_order = \"lifo\" far fewer wait" : "";
-    if (machine.triangle_queue.overflowed())
+    if (one.triangle_queue.overflowed())
         throw ResourceError(fmt::format(
             "hardware.queue_capacity = {}: the Triangle Queue was full when a triangle arrived in cycle {}; set "
             "hardware.queue_capacity = 0, without a limit, or hardware.queue_overflow = \"spill\"{}",
-            setup.design.queue.capacity, machine.clock.last_cycle(), fewer));
-    if (machine.triangle_queue.off_chip_memory_full())
+            setup.design.queue.capacity, one.clock.last_cycle(), fewer));
+    if (one.triangle_queue.off_chip_memory_full())
         throw ResourceError(fmt::format(
             "hardware.off_chip_triangles = {}: in cycle {} a full Triangle Queue (hardware.queue_capacity = "
             "{}) had more to spill; set hardware.queue_capacity = 0, without a limit, or raise "
             "hardware.off_chip_triangles{}",
-            setup.design.queue.off_chip_triangles, machine.clock.last_cycle(), setup.design.queue.capacity, fewer));
+            setup.design.queue.off_chip_triangles, one.clock.last_cycle(), setup.design.queue.capacity, fewer));
 }
 
 std::string Simulation::stuck() const {
     std::string text;
     for (const auto& hosted : machines)
         if (!hosted->drained())
-            text += stuck(*machine, setup);
+            text += stuck(*hosted, setup);
     return text;
 }
 
-std::string Simulation::stuck(const HostedMachine& machine, const MachineSetup& setup) {
-    const auto& machine = machine.machine;
-    const auto& host = machine.host;
+std::string Simulation::stuck(const HostedMachine& hosted, const MachineSetup& setup) {
+    const Machine& stuck_machine = hosted.machine;
+    const Host& host = hosted.host;
     const bool timed = setup.design.transport == Transport::non_blocking;
-    const CycleScheduler& clock = machine.clock;
+    const CycleScheduler& clock = stuck_machine.clock;
     std::string text =
         clock.stalled() ? fmt::format(
                               "livelock: for more than limits.cycles_without_progress = {} cycles of work, up to cycle "
@@ -139,11 +139,11 @@ std::string Simulation::stuck(const HostedMachine& machine, const MachineSetup& 
                               clock.most_without_progress(), clock.last_cycle())
                         : fmt::format("deadlock: no events are pending{}, but work remains\n",
                                       timed ? fmt::format(" after cycle {}", clock.last_cycle()) : std::string{});
-    const auto& counts = machine.pass_or_tessellate.counts();
+    const auto& counts = stuck_machine.pass_or_tessellate.counts();
     text += fmt::format("  host: {} of {} base triangles sent{}\n", host.sent(), host.total(),
                         host.idle() ? "" : ", waits for get_triangle");
     text += fmt::format("  finished: {} triangles\n", counts.finished);
-    for (const Unit* unit : machine.units()) {
+    for (const Unit* unit : stuck_machine.units()) {
         std::string line = unit->describe_contents();
         const Activity& activity = unit->activity();
         const sc_core::sc_object* by = activity.by();
@@ -155,7 +155,7 @@ std::string Simulation::stuck(const HostedMachine& machine, const MachineSetup& 
         if (!line.empty())
             text += fmt::format("  {}: {}\n", unit->name(), line);
     }
-    if (!clock.stalled() && machine.triangle_queue.waiting() > 0 && setup.design.queue.capacity > 0 &&
+    if (!clock.stalled() && stuck_machine.triangle_queue.waiting() > 0 && setup.design.queue.capacity > 0 &&
         setup.design.queue.overflow == QueueOverflow::stall)
         text += fmt::format(
             "  a full queue (hardware.queue_capacity = {}) does not spill: set hardware.queue_capacity = 0, without a limit, or "

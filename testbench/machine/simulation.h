@@ -42,9 +42,9 @@ struct Simulation {
     Decisions& decisions = machines.front()->decisions;
 
   private:
-    void check_limits(const Machine& machine) const;
+    void check_limits(const Machine& one) const;
     std::string stuck() const;
-    static std::string stuck(const HostedMachine& machine, const MachineSetup& setup);
+    static std::string stuck(const HostedMachine& hosted, const MachineSetup& setup);
 
     std::uint64_t cycles_ = 0;
     const bool only_own_units_;  // all units are those of modules/

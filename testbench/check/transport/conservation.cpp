@@ -15,7 +15,7 @@ namespace {
 class Equations {
   public:
     /// Sets the machine that the following equations belong to.
-    void of(const std::string& hosted) { machine_ = machine + ": "; }
+    void of(const std::string& machine) { machine_ = machine + ": "; }
     void add(const std::string& name, std::uint64_t left, std::uint64_t right) {
         list_.push_back({machine_ + name, left, right});
     }
@@ -221,7 +221,7 @@ void add_machine(Equations& list, const MachineSetup& setup, const HostedMachine
                         evaluated.summed_height,
                         evaluated.summed_height_by_codes,
                         evaluated.off_lattice};
-    add_triangles(list, setup, machine);
+    add_triangles(list, setup, hosted);
     list.add(families      ? "edges tested = 3 per finished triangle, and those tested again"
              : final_edges ? "edges tested = 3 per base triangle, 4 per split, and those tested again"
                            : "edges tested = 3 per pass",
@@ -229,8 +229,8 @@ void add_machine(Equations& list, const MachineSetup& setup, const HostedMachine
     add_reads(list, p, tested, datapath::map_entry_count(setup.registers.formats),
               functions_of(setup.registers.formats.height_test).codes);
     if (setup.design.transport == Transport::non_blocking) {
-        add_connections(list, machine);
-        add_timed(list, setup, machine, tested);
+        add_connections(list, hosted);
+        add_timed(list, setup, hosted, tested);
     }
 }
 

@@ -105,7 +105,7 @@ class Backend {
 
     PipelinePlan tessellation_plan_;
     Source& source_;
-    Machine join_;
+    Pipeline join_;
     States join_states_;
     Level join_level_;
     Input tessellation_input_;

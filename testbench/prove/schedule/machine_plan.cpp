@@ -71,9 +71,9 @@ Plan plan_of(const tessera::Machine& machine, const Rasteriser& rasteriser, cons
     plan.tessellation = pipeline_plan(t.tessellation);
     plan.lighting = {input(machine.lighting.from_pass_or_tessellate), pipeline_plan(t.lighting)};
     plan.rasteriser = input(rasteriser.from_lighting);
-    const unsigned displaced = plan.displace_vertex.machine.stages + 1;
-    const unsigned tested = plan.tests.height_test.machine.stages + 1;
-    const unsigned bumped = plan.tests.normal_test.machine.stages + 1;
+    const unsigned displaced = plan.displace_vertex.pipeline.stages + 1;
+    const unsigned tested = plan.tests.height_test.pipeline.stages + 1;
+    const unsigned bumped = plan.tests.normal_test.pipeline.stages + 1;
     plan.displacement_map =
         table_plan(machine.displacement_map, t.displacement_map, t.stalls, registers.displacement_map, displaced);
     if (machine.displacement_map_for_tests != nullptr)
@@ -82,7 +82,7 @@ Plan plan_of(const tessera::Machine& machine, const Rasteriser& rasteriser, cons
     plan.normal_map = table_plan(machine.normal_map, t.normal_map, t.stalls, registers.normal_map, bumped);
     plan.height_table =
         table_plan(machine.height_table, height_table_timing(t, registers.formats), t.stalls, registers.height_table,
-                   functions_of(registers.formats.height_test).requests * plan.tests.height_test.machine.stages + 1);
+                   functions_of(registers.formats.height_test).requests * plan.tests.height_test.pipeline.stages + 1);
     return plan;
 }
 

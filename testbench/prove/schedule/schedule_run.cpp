@@ -46,17 +46,17 @@ class ItemTimes : public ActivityObserver, public schedule::ItemObserver {
 /// A machine's units by the schedule's numbers; null: absent, or the rasteriser.
 using Units = std::array<Unit*, schedule::units>;
 
-Units units_of(Machine& hosted) {
+Units units_of(Machine& machine) {
     Units units{};
-    for (Unit* const unit : hosted.units())
+    for (Unit* const unit : machine.units())
         for (std::size_t k = 0; k < all_units.size(); ++k)
             if (unit->basename() == std::string_view(all_units[k].name))
                 units[k] = unit;
-    units[schedule::height_test] = &hosted.tessellation_tests[0].height_test;
-    units[schedule::displacement_map] = &hosted.displacement_map;
-    units[schedule::displacement_map_for_tests] = hosted.displacement_map_for_tests.get();
-    units[schedule::normal_map] = &hosted.normal_map;
-    units[schedule::height_table] = &hosted.height_table;
+    units[schedule::height_test] = &machine.tessellation_tests[0].height_test;
+    units[schedule::displacement_map] = &machine.displacement_map;
+    units[schedule::displacement_map_for_tests] = machine.displacement_map_for_tests.get();
+    units[schedule::normal_map] = &machine.normal_map;
+    units[schedule::height_table] = &machine.height_table;
     return units;
 }
 
