@@ -4,6 +4,14 @@
 #include <cmath>
 
 namespace tessera {
+namespace {
+
+/// Rounding must not select the side of a texel's edge: the hardware's coordinates are exact there.
+bool on_edge(double t) {
+    return std::abs(t - std::nearbyint(t)) < 1e-8;
+}
+
+}  // namespace
 
 std::int64_t addressed(std::int64_t index, std::int64_t size, Addressing mode) {
     if (mode == Addressing::clamp)
@@ -46,29 +54,38 @@ DisplacedSurface::Corners DisplacedSurface::corners(std::size_t triangle) const 
     return corners;
 }
 
-double DisplacedSurface::value(const glm::dvec2& texel, Sampling sampling) const {
+double DisplacedSurface::value(const glm::dvec2& texel, Sampling sampling, unsigned below) const {
     const auto at = [&](std::int64_t x, std::int64_t y) {
         return static_cast<double>(map_.at(static_cast<int>(addressed(x, map_.width, displacement_.address_u)),
                                            static_cast<int>(addressed(y, map_.height, displacement_.address_v))));
     };
     if (sampling == Sampling::nearest_texel) {
-        // On a texel's edge rounding must not select the side: the hardware's coordinates are exact there.
-        const auto index = [](double t) {
-            const double nearest = std::nearbyint(t);
-            return static_cast<std::int64_t>(std::abs(t - nearest) < 1e-8 ? nearest : std::floor(t));
+        const auto index = [&](double t, Below side) {
+            if (!on_edge(t))
+                return static_cast<std::int64_t>(std::floor(t));
+            return static_cast<std::int64_t>(std::nearbyint(t)) - ((below & side) != 0 ? 1 : 0);
         };
-        return at(index(texel.x), index(texel.y));
+        return at(index(texel.x, below_u), index(texel.y, below_v));
     }
     const glm::dvec2 from_centre = texel - 0.5;
     const glm::dvec2 before = glm::floor(from_centre);
     const glm::dvec2 part = from_centre - before;
     const auto x = static_cast<std::int64_t>(before.x), y = static_cast<std::int64_t>(before.y);
-    const double below = (1 - part.x) * at(x, y) + part.x * at(x + 1, y);
-    const double above = (1 - part.x) * at(x, y + 1) + part.x * at(x + 1, y + 1);
-    return (1 - part.y) * below + part.y * above;
+    const double lower = (1 - part.x) * at(x, y) + part.x * at(x + 1, y);
+    const double upper = (1 - part.x) * at(x, y + 1) + part.x * at(x + 1, y + 1);
+    return (1 - part.y) * lower + part.y * upper;
 }
 
-glm::dvec3 DisplacedSurface::point(const Corners& corners, const glm::dvec3& b, Sampling sampling) const {
+std::uint8_t DisplacedSurface::steps_at(const glm::dvec2& texel) const {
+    if (!on_edge(texel.x) && !on_edge(texel.y))
+        return 0;
+    const auto height = [&](unsigned below) { return value(texel, Sampling::nearest_texel, below); };
+    const double here = height(0), left = height(below_u), down = height(below_v), both = height(below_u | below_v);
+    return axes(left != here || both != down, down != here || both != left);
+}
+
+glm::dvec3 DisplacedSurface::point(const Corners& corners, const glm::dvec3& b, Sampling sampling,
+                                   unsigned below) const {
     glm::dvec3 normal = corners.normal[0];
     if (!corners.flat) {
         normal = b.x * corners.normal[0] + b.y * corners.normal[1] + b.z * corners.normal[2];
@@ -76,7 +93,7 @@ glm::dvec3 DisplacedSurface::point(const Corners& corners, const glm::dvec3& b, 
         normal = length > 0 ? normal / length : glm::dvec3(0);
     }
     const glm::dvec3 base = b.x * corners.position[0] + b.y * corners.position[1] + b.z * corners.position[2];
-    return base + displacement_.of(value(texel(corners, b), sampling)) * frame_.scale * normal;
+    return base + displacement_.of(value(texel(corners, b), sampling, below)) * frame_.scale * normal;
 }
 
 }  // namespace tessera

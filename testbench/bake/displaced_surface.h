@@ -20,7 +20,15 @@ namespace tessera {
 /// last texel, or the first if the map repeats). That surface has a step at every texel's edge. No mesh without
 /// cracks follows it, and an error against it stays above half of the map's steps. Reported in addition to separate
 /// the two causes: an error that is small against this and large against the other is due to addressing.
+/// Distances are to and from the surface with its limits: a texel is flat up to and including all its edges, and a step
+/// is a wall between the heights on its two sides.
 enum class Sampling : std::uint8_t { interpolated, nearest_texel };
+
+/// On a texel's edge along an axis: the texel below it, not the one above, which the hardware reads. To be combined.
+enum Below : std::uint8_t { below_u = 1, below_v = 2 };
+constexpr std::uint8_t axes(bool u, bool v) {
+    return static_cast<std::uint8_t>((u ? +below_u : 0) | (v ? +below_v : 0));
+}
 
 /// Conversion of map values to displacement, and the map's address modes.
 struct DisplacementOf {
@@ -67,15 +75,17 @@ class DisplacedSurface {
     };
     Corners corners(std::size_t triangle) const;
 
-    glm::dvec3 point(const Corners& corners, const glm::dvec3& b, Sampling sampling) const;
+    glm::dvec3 point(const Corners& corners, const glm::dvec3& b, Sampling sampling, unsigned below = 0) const;
     static glm::dvec2 texel(const Corners& corners, const glm::dvec3& b) {
         return b.x * corners.texel[0] + b.y * corners.texel[1] + b.z * corners.texel[2];
     }
     /// The texture coordinate; 0..1 spans the map.
     glm::dvec2 texture(const glm::dvec2& texel) const { return texel / glm::dvec2(map_.width, map_.height); }
 
-    /// The map's value at t in texels.
-    double value(const glm::dvec2& texel, Sampling sampling) const;
+    /// The map's value at t in texels. `below`: of Below, for nearest_texel.
+    double value(const glm::dvec2& texel, Sampling sampling, unsigned below = 0) const;
+    /// The axes, as Below, on whose texel's edge t lies, with different values of nearest_texel on its two sides.
+    std::uint8_t steps_at(const glm::dvec2& texel) const;
 
   private:
     const BaseMesh& mesh_;

@@ -25,6 +25,10 @@ std::uint64_t lattice_points(std::uint64_t n) {
     return (n + 1) * (n + 2) / 2;
 }
 
+using Place = std::array<std::size_t, 2>;
+/// The corners of a cell's two facets, from its own point.
+constexpr std::array<std::array<Place, 3>, 2> facet_corners{{{{{0, 0}, {1, 0}, {0, 1}}}, {{{1, 0}, {1, 1}, {0, 1}}}}};
+
 }  // namespace
 
 ReferenceLattice::ReferenceLattice(const DisplacedSurface& surface, std::uint64_t most_samples) : surface_(surface) {
@@ -66,8 +70,11 @@ ReferenceLattice::Cell ReferenceLattice::Points::cell(std::size_t a, std::size_t
     if (a >= tile_cells || b >= tile_cells || a + b + 1 > limit)
         return cell;
     cell.facets = a + b + 2 > limit ? 1 : 2;
-    cell.corners = {{{number(a, b), number(a + 1, b), number(a, b + 1)},
-                     {number(a + 1, b), number(a + 1, b + 1), number(a, b + 1)}}};
+    for (std::size_t k = 0; k < cell.facets; ++k)
+        for (std::size_t c = 0; c < 3; ++c) {
+            const std::size_t at = number(a + facet_corners[k][c][0], b + facet_corners[k][c][1]);
+            cell.corners[k][c] = std::size_t{static_cast<std::uint8_t>(below[k][c] & steps[at])} * count + at;
+        }
     return cell;
 }
 
@@ -81,9 +88,29 @@ void ReferenceLattice::evaluate(const Tile& tile, Sampling sampling, Points& poi
     const std::size_t first = (tile.column + std::size_t{tile.row}) * tile_cells;
     points.limit = subdivisions_[tile.triangle] - first;
     const DisplacedSurface::Corners corners = surface_.corners(tile.triangle);
+    for (std::size_t k = 0; k < 2; ++k)
+        for (std::size_t c = 0; c < 3; ++c) {
+            const auto texels = [&](std::size_t corner) {
+                const auto& [i, j] = facet_corners[k][corner % 3];
+                return static_cast<double>(i) * (corners.texel[1] - corners.texel[0]) +
+                       static_cast<double>(j) * (corners.texel[2] - corners.texel[0]);
+            };
+            constexpr double rounding = 1e-9;
+            const glm::dvec2 inwards = texels(c + 1) + texels(c + 2) - 2.0 * texels(c);
+            points.below[k][c] = axes(inwards.x < -rounding, inwards.y < -rounding);
+            const glm::dvec2 edge = glm::abs(texels(c + 1) - texels(c));
+            points.across[k][c] = axes(edge.x < rounding, edge.y < rounding);
+        }
     for (std::size_t b = 0; b < Points::side && b <= points.limit; ++b)
-        for (std::size_t a = 0; points.has(a, b); ++a)
-            points.point[Points::number(a, b)] = surface_.point(corners, barycentric(tile, a, b), sampling);
+        for (std::size_t a = 0; points.has(a, b); ++a) {
+            const glm::dvec3 at = barycentric(tile, a, b);
+            points.steps[Points::number(a, b)] = sampling == Sampling::nearest_texel
+                                                     ? surface_.steps_at(DisplacedSurface::texel(corners, at))
+                                                     : std::uint8_t{0};
+            for (unsigned below = 0; below < 4; ++below)
+                if (points.has(a, b, below))
+                    points.point[Points::number(a, b, below)] = surface_.point(corners, at, sampling, below);
+        }
 }
 
 }  // namespace tessera

@@ -17,6 +17,9 @@ namespace tessera {
 /// density() gives the result.
 /// The reference is flat between samples, bilinear interpolation is not: where its slope along an axis changes by a
 /// height of s per texel at a texel centre, a facet's edge cuts off a corner of at most s / 16.
+/// With nearest_texel a point on a texel's edge has a height for each of the texels there. A facet takes those of the
+/// texel that it lies in; at its edges on a texel's edge walls join the heights. Only where facets cross texels' edges,
+/// which they do if the base mesh's are not on them, are they slopes.
 ///
 /// Not stored, but evaluated in tiles of 16 by 16 cells of two facets each.
 class ReferenceLattice {
@@ -36,7 +39,7 @@ class ReferenceLattice {
     const std::vector<Tile>& tiles() const { return tiles_; }
     std::uint32_t subdivision(std::size_t triangle) const { return subdivisions_[triangle]; }
 
-    /// Facets of a cell (a, b) of a tile as indices of points; the second is missing on the triangle's third edge.
+    /// Facets of a cell (a, b) of a tile as places of points; the second is missing on the triangle's third edge.
     struct Cell {
         std::size_t facets = 0;
         std::array<std::array<std::size_t, 3>, 2> corners{};
@@ -44,14 +47,38 @@ class ReferenceLattice {
 
     /// A tile's displaced points, local; (a, b) is relative to the tile's first cell.
     struct Points {
-        static constexpr std::size_t side = tile_cells + 1;
-        static constexpr std::size_t number(std::size_t a, std::size_t b) { return b * side + a; }
+        static constexpr std::size_t side = tile_cells + 1, count = side * side;
+        /// A point's place: its number and, on a step of nearest_texel, the side from which it is seen, of Below.
+        static constexpr std::size_t number(std::size_t a, std::size_t b, std::size_t below = 0) {
+            return below * count + b * side + a;
+        }
 
         std::size_t limit = 0;  ///< points with a + b <= limit exist
-        std::array<glm::dvec3, side * side> point;
+        std::array<glm::dvec3, 4 * count> point;
+        std::array<std::uint8_t, count> steps;  ///< by number: DisplacedSurface::steps_at(); 0 for interpolated
+        /// For each corner of the two facets of a cell: the axes along which the facet lies below it, and those that the
+        /// edge to the next corner is perpendicular to.
+        std::array<std::array<std::uint8_t, 3>, 2> below, across;
 
         bool has(std::size_t a, std::size_t b) const { return a < side && b < side && a + b <= limit; }
+        bool has(std::size_t a, std::size_t b, std::size_t seen_from) const {
+            return has(a, b) && (seen_from & ~std::size_t{steps[number(a, b)]}) == 0;
+        }
         Cell cell(std::size_t a, std::size_t b) const;
+
+        /// Calls at(triangle) for the two triangles of each wall at a facet's edges; the facet below the step has it.
+        template <class At>
+        void for_each_wall(const Cell& cell, At&& at) const {
+            for (std::size_t k = 0; k < cell.facets; ++k)
+                for (std::size_t c = 0; c < 3; ++c) {
+                    const std::size_t p = cell.corners[k][c], q = cell.corners[k][(c + 1) % 3];
+                    for (const std::size_t axis : {below_u, below_v})
+                        if ((p / count & q / count & across[k][c] & axis) != 0) {
+                            at(std::array{point[p], point[q], point[q - axis * count]});
+                            at(std::array{point[p], point[q - axis * count], point[p - axis * count]});
+                        }
+                }
+        }
     };
     void evaluate(const Tile& tile, Sampling sampling, Points& points) const;
 

@@ -34,12 +34,13 @@ const ReferenceNearest::Kept& ReferenceNearest::fetch(std::size_t tile) {
     kept.boxes.fill({});
     for (std::size_t b = 0; b < ReferenceLattice::Points::side; ++b)
         for (std::size_t a = 0; kept.points.has(a, b); ++a) {
-            const glm::dvec3& p = kept.points.point[ReferenceLattice::Points::number(a, b)];
             // a point on the border of two boxes belongs to both
             for (const std::size_t x : {a / 2, a > 0 ? (a - 1) / 2 : 0})
                 for (const std::size_t y : {b / 2, b > 0 ? (b - 1) / 2 : 0})
-                    if (x < 8 && y < 8)
-                        kept.boxes[box_number(0, x, y)].add(p);
+                    for (std::size_t below = 0; x < 8 && y < 8 && below < 4; ++below)
+                        if (kept.points.has(a, b, below))
+                            kept.boxes[box_number(0, x, y)].add(
+                                kept.points.point[ReferenceLattice::Points::number(a, b, below)]);
         }
     for (std::size_t level = 1; level < 3; ++level) {
         const std::size_t side = ReferenceLattice::tile_cells / cells_of_level[level];
@@ -52,18 +53,20 @@ const ReferenceNearest::Kept& ReferenceNearest::fetch(std::size_t tile) {
     return kept;
 }
 
+void ReferenceNearest::look_at(const std::array<glm::dvec3, 3>& facet) {
+    const double squared = tessera::squared_distance(facet, point_);
+    if (squared < nearest_squared_) {
+        nearest_squared_ = squared;
+        nearest_facet_ = facet;
+    }
+}
+
 void ReferenceNearest::look_at_cell(const Kept& kept, std::size_t a, std::size_t b) {
     const ReferenceLattice::Cell cell = kept.points.cell(a, b);
-    for (std::size_t k = 0; k < cell.facets; ++k) {
-        const std::array<glm::dvec3, 3> facet{kept.points.point[cell.corners[k][0]],
-                                              kept.points.point[cell.corners[k][1]],
-                                              kept.points.point[cell.corners[k][2]]};
-        const double squared = tessera::squared_distance(facet, point_);
-        if (squared < nearest_squared_) {
-            nearest_squared_ = squared;
-            nearest_facet_ = facet;
-        }
-    }
+    for (std::size_t k = 0; k < cell.facets; ++k)
+        look_at({kept.points.point[cell.corners[k][0]], kept.points.point[cell.corners[k][1]],
+                 kept.points.point[cell.corners[k][2]]});
+    kept.points.for_each_wall(cell, [&](const std::array<glm::dvec3, 3>& part) { look_at(part); });
 }
 
 void ReferenceNearest::look_at_boxes(const Kept& kept, std::size_t level, std::size_t x, std::size_t y) {

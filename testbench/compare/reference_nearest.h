@@ -32,6 +32,7 @@ class ReferenceNearest {
     void look_at_tile(std::size_t tile);
     void look_at_boxes(const Kept& kept, std::size_t level, std::size_t x, std::size_t y);
     void look_at_cell(const Kept& kept, std::size_t a, std::size_t b);
+    void look_at(const std::array<glm::dvec3, 3>& facet);
 
     const ReferenceLattice& lattice_;
     Sampling sampling_;

@@ -28,7 +28,9 @@ BoxHierarchy::Box ReferenceToMesh::start(std::size_t tile) {
     facets_.fill(0);
     for (std::size_t b = 0; b < Points::side; ++b)
         for (std::size_t a = 0; points_.has(a, b); ++a) {
-            box.add(points_.point[Points::number(a, b)]);
+            for (std::size_t below = 0; below < 4; ++below)
+                if (points_.has(a, b, below))
+                    box.add(points_.point[Points::number(a, b, below)]);
             const ReferenceLattice::Cell cell = points_.cell(a, b);
             for (std::size_t k = 0; k < cell.facets; ++k)
                 for (const std::size_t corner : cell.corners[k])
@@ -41,15 +43,17 @@ void ReferenceToMesh::measure_block(std::size_t first_a, std::size_t first_b, st
     const std::size_t end_a = std::min(first_a + size, Points::side), end_b = std::min(first_b + size, Points::side);
     BoxHierarchy::Box box;
     std::size_t count = 0;
-    for (std::size_t b = first_b; b < end_b; ++b)
-        for (std::size_t a = first_a; a < end_a && points_.has(a, b); ++a, ++count)
-            box.add(points_.point[Points::number(a, b)]);
+    const auto for_each = [&](const auto& take) {
+        for_each_corner(first_a, first_b, end_a, end_b, [&](std::size_t, std::size_t, std::size_t at) { take(at); });
+    };
+    for_each([&](std::size_t at) {
+        box.add(points_.point[at]);
+        ++count;
+    });
     if (count == 0)
         return;
     if (size <= smallest_block) {
-        for (std::size_t b = first_b; b < end_b; ++b)
-            for (std::size_t a = first_a; a < end_a && points_.has(a, b); ++a)
-                found_[Points::number(a, b)] = nearest_->nearest(points_.point[Points::number(a, b)], guess_);
+        for_each([&](std::size_t at) { found_[at] = nearest_->nearest(points_.point[at], guess_); });
         return;
     }
     const glm::dvec3 centre = (box.low + box.high) / 2.0;
@@ -74,11 +78,10 @@ void ReferenceToMesh::measure_block(std::size_t first_a, std::size_t first_b, st
     std::sort(candidates_.begin(), candidates_.end(), [](const Candidate& l, const Candidate& r) {
         return l.from_centre < r.from_centre || (l.from_centre == r.from_centre && l.triangle < r.triangle);
     });
-    for (std::size_t b = first_b; b < end_b; ++b)
-        for (std::size_t a = first_a; a < end_a && points_.has(a, b); ++a) {
-            const glm::dvec3& p = points_.point[Points::number(a, b)];
-            found_[Points::number(a, b)] = nearest_candidate(p, glm::length(p - centre));
-        }
+    for_each([&](std::size_t at) {
+        const glm::dvec3& p = points_.point[at];
+        found_[at] = nearest_candidate(p, glm::length(p - centre));
+    });
 }
 
 void ReferenceToMesh::measure_blocks() {
@@ -111,15 +114,15 @@ NearestTriangle::Found ReferenceToMesh::nearest_candidate(const glm::dvec3& p, d
     return best;
 }
 
-ReferenceToMesh::Sample ReferenceToMesh::sample(std::size_t tile, std::size_t a, std::size_t b) const {
-    const std::size_t number = Points::number(a, b);
+ReferenceToMesh::Sample ReferenceToMesh::sample(std::size_t tile, std::size_t a, std::size_t b,
+                                                std::size_t place) const {
     const glm::dvec3 where = lattice_.barycentric(lattice_.tiles()[tile], a, b);
     Sample sample;
-    sample.position = points_.point[number];
+    sample.position = points_.point[place];
     sample.texture = lattice_.surface().texture(DisplacedSurface::texel(corners_, where));
-    sample.squared = found_[number].squared;
-    sample.triangle = found_[number].triangle;
-    sample.weight = facet_area_ / 3 * static_cast<double>(facets_[number]);
+    sample.squared = found_[place].squared;
+    sample.triangle = found_[place].triangle;
+    sample.weight = facet_area_ / 3 * static_cast<double>(facets_[place]);
     return sample;
 }
 

@@ -74,11 +74,36 @@ inline BruteForce brute_force(const BaseMesh& base, const HeightMap& map, const 
         const int n = static_cast<int>(lattice.subdivision(k));
         const auto& p = corners.position;
         const double area = glm::length(glm::cross(p[1] - p[0], p[2] - p[0])) / 2 / (n * n);
-        const auto at = [&](int i, int j) {
-            return surface.point(corners, glm::dvec3(n - i - j, i, j) / static_cast<double>(n), sampling);
+        // The point at b, with the map's value a millionth of the way towards `side`, in texels.
+        const auto at = [&](const glm::dvec3& b, const glm::dvec2& side) {
+            const auto &c = corners.position, &normals = corners.normal;
+            const glm::dvec2 t = DisplacedSurface::texel(corners, b);
+            const double value =
+                surface.value(sampling == Sampling::interpolated ? t : t + 1e-6 * (side - t), sampling);
+            const glm::dvec3 normal = glm::normalize(b.x * normals[0] + b.y * normals[1] + b.z * normals[2]);
+            return b.x * c[0] + b.y * c[1] + b.z * c[2] + displacement.of(value) * normal;
         };
-        const auto facet = [&](const std::array<glm::dvec3, 3>& f) {
+        const auto facet = [&](const std::array<std::array<int, 2>, 3>& places) {
+            std::array<glm::dvec3, 3> b{}, f{};
+            for (std::size_t c = 0; c < 3; ++c)
+                b[c] = glm::dvec3(n - places[c][0] - places[c][1], places[c][0], places[c][1]) / static_cast<double>(n);
+            const glm::dvec2 middle = DisplacedSurface::texel(corners, (b[0] + b[1] + b[2]) / 3.0);
+            for (std::size_t c = 0; c < 3; ++c)
+                f[c] = at(b[c], middle);
             facets.push_back(f);
+            for (std::size_t c = 0; c < 3 && sampling == Sampling::nearest_texel; ++c)
+                for (const int axis : {0, 1}) {
+                    const std::size_t d = (c + 1) % 3;
+                    const double line = std::round(DisplacedSurface::texel(corners, b[c])[axis]);
+                    const auto off = [&](std::size_t e) { return DisplacedSurface::texel(corners, b[e])[axis] - line; };
+                    if (std::max(std::abs(off(c)), std::abs(off(d))) > 1e-8 || middle[axis] > line)
+                        continue;
+                    glm::dvec2 beyond = middle;  // a wall from the facet below the line
+                    beyond[axis] = 2 * line - middle[axis];
+                    const std::array<glm::dvec3, 2> other{at(b[c], beyond), at(b[d], beyond)};
+                    facets.push_back({f[c], f[d], other[1]});
+                    facets.push_back({f[c], other[1], other[0]});
+                }
             for (const glm::dvec3& point : f) {
                 const double distance = nearest(soup, point);
                 result.reference_max = std::max(result.reference_max, distance);
@@ -88,9 +113,9 @@ inline BruteForce brute_force(const BaseMesh& base, const HeightMap& map, const 
         };
         for (int j = 0; j < n; ++j)
             for (int i = 0; i + j < n; ++i) {
-                facet({at(i, j), at(i + 1, j), at(i, j + 1)});
+                facet({{{i, j}, {i + 1, j}, {i, j + 1}}});
                 if (i + j + 1 < n)
-                    facet({at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)});
+                    facet({{{i + 1, j}, {i + 1, j + 1}, {i, j + 1}}});
             }
     }
     result.reference_rms = std::sqrt(squares / weights);

@@ -229,7 +229,8 @@ TEST_CASE("mirroring, rotating corners and reordering triangles change no figure
     const HeightMap map = make_map(8, 8, value);
     const RecordedMesh mesh = emitted(
         base, [](const BaseVertex& v) { return v.position + glm::dvec3(0, 0, 0.3 * v.texture.x + 0.1 * v.texture.y); });
-    const SurfaceError error = measured(base, map, heights(0.5), mesh);
+    const Sampling sampling = GENERATE(Sampling::interpolated, Sampling::nearest_texel);
+    const SurfaceError error = measured(base, map, heights(0.5), mesh, sampling);
     const auto same = [&](const SurfaceError& other) {
         CHECK(other.reference_to_mesh.max == Approx(error.reference_to_mesh.max).epsilon(1e-12));
         CHECK(other.reference_to_mesh.rms == Approx(error.reference_to_mesh.rms).epsilon(1e-12));
@@ -240,7 +241,7 @@ TEST_CASE("mirroring, rotating corners and reordering triangles change no figure
     std::rotate(turned.triangles.begin(), turned.triangles.begin() + 3, turned.triangles.end());
     for (RecordedMesh::Triangle& t : turned.triangles)
         std::rotate(t.vertices.begin(), t.vertices.begin() + 1, t.vertices.end());
-    same(measured(base, map, heights(0.5), turned));
+    same(measured(base, map, heights(0.5), turned, sampling));
 
     BaseMesh mirrored_base = base;
     for (BaseVertex& v : mirrored_base.vertices) {
@@ -252,10 +253,10 @@ TEST_CASE("mirroring, rotating corners and reordering triangles change no figure
         mirrored.positions[k].x = -mirrored.positions[k].x;
         mirrored.textures[k].x = 1 - mirrored.textures[k].x;
     }
-    same(
-        measured(mirrored_base, make_map(8, 8, [&](int x, int y) { return value(7 - x, y); }), heights(0.5), mirrored));
+    same(measured(mirrored_base, make_map(8, 8, [&](int x, int y) { return value(7 - x, y); }), heights(0.5), mirrored,
+                  sampling));
     // Repeating the measurement gives the same bits.
-    const SurfaceError again = measured(base, map, heights(0.5), mesh);
+    const SurfaceError again = measured(base, map, heights(0.5), mesh, sampling);
     CHECK(again.reference_to_mesh.rms == error.reference_to_mesh.rms);
     CHECK(again.mesh_to_reference.rms == error.mesh_to_reference.rms);
     CHECK(again.vertices == error.vertices);
@@ -453,7 +454,7 @@ TEST_CASE("a step's error with either sampling method") {
     CHECK(error.interpolated.reference_to_mesh.samples == 2u * 17 * 18 / 2);
     CHECK(error.reference_density == 4);
     CHECK(error.nearest_texel.reference_to_mesh.max == Approx(0.125));
-    CHECK(error.nearest_texel.reference_to_mesh.rms == Approx(0.125 * std::sqrt(8.5 / 16)));
+    CHECK(error.nearest_texel.reference_to_mesh.rms == Approx(0.125 * std::sqrt(0.5)));
     CHECK(error.interpolated.reference_to_mesh.max == Approx(0.125));
     // 1/4, 1/2, 3/4 in columns 7, 8, 9; then 1 in six and a half
     CHECK(error.interpolated.reference_to_mesh.rms == Approx(0.125 * std::sqrt((0.0625 + 0.25 + 0.5625 + 6.5) / 16)));
@@ -462,4 +463,22 @@ TEST_CASE("a step's error with either sampling method") {
     CHECK(error.interpolated.mesh_to_reference.samples == 2u * 36 + 2 + 4);
     CHECK(error.nearest_texel.mesh_to_reference.samples == 2u * 36 + 2 + 4);
     CHECK(error.texel == 1);
+}
+
+// A step down of a whole unit; the mesh leans against it and meets its foot.
+TEST_CASE("a texel reaches to its edges on both sides of a step, and the step is a wall") {
+    const bool along_u = GENERATE(true, false), falls = GENERATE(true, false);
+    const BaseMesh base = make_plane(1, 1, 4, 4);
+    const HeightMap map = make_map(4, 4, [&](int x, int y) { return ((along_u ? x : y) < 2) == falls ? 1 : 0; });
+    const RecordedMesh leaning = emitted(base, [&](const BaseVertex& v) {
+        const double along = (along_u ? v.position.x : v.position.y) * (falls ? 1 : -1);
+        return v.position + glm::dvec3(0, 0, -along / 4);
+    });
+    const SurfaceError error = measured(base, map, heights(1), leaning, Sampling::nearest_texel);
+    CHECK(error.reference_to_mesh.max == Approx(1 / std::hypot(1, 0.25)));
+    CHECK(error.reference_to_mesh.worst->position.z == Approx(1));
+    // Half way up the wall, at no distance from it.
+    RecordedMesh point = leaning;
+    point.positions.assign(point.positions.size(), {0, 0, 0.5});
+    require_constant(measured(base, map, heights(1), point, Sampling::nearest_texel).mesh_to_reference, 0);
 }
