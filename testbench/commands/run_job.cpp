@@ -209,7 +209,7 @@ Ending run_once(const Job& asked, const Command& command, const std::string& nam
     const std::unique_ptr<GoldenJob> golden_job = golden_made.get();
     std::optional<GoldenRun> golden_run;
     if (job.check.end_to_end)
-        golden_run.emplace(setup, *golden_job, received_triangles(setup, *golden_job),
+        golden_run.emplace(*golden_job, received_triangles(setup, *golden_job),
                            static_cast<std::uint64_t>(job.limits.triangles));
 
     const auto start = std::chrono::steady_clock::now();
@@ -258,9 +258,9 @@ Ending run_once(const Job& asked, const Command& command, const std::string& nam
         const datapath::Saturations saturated = Totals(simulation).saturations;
         const bool judged = saturated.displaced_position + saturated.screen_position + saturated.view_distance == 0;
         progress.show("golden model's own run", 0.62);
-        checks.end_to_end =
-            golden_run->compare(mesh, judged ? job.check.allowed_triangles : std::numeric_limits<double>::infinity(),
-                                [&](double part) { progress.show("distances", 0.65 + 0.15 * part); });
+        checks.end_to_end = golden_run->compare(
+            setup, mesh, judged ? job.check.allowed_triangles : std::numeric_limits<double>::infinity(),
+            [&](double part) { progress.show("distances", 0.65 + 0.15 * part); });
         golden_run.reset();
     }
     if ((checks.conformance && checks.conformance->flips_percent() > checks.allowed_flips) ||

@@ -19,10 +19,11 @@ std::uint64_t bound_of(const EmittedMesh& hardware) {
     return 4 * hardware.triangles.size() + 1000;
 }
 
-golden::Parameters with_steps_of_formats(golden::Parameters parameters, const MachineSetup& setup) {
-    parameters.texture_step = std::ldexp(1.0, -setup.registers.formats.texture.fraction);
-    parameters.direction_step = std::ldexp(1.0, -setup.registers.formats.normal.fraction);
-    parameters.distance_step = std::ldexp(1.0, -setup.registers.formats.view_distance.fraction);
+golden::Parameters with_steps(golden::Parameters parameters, std::int64_t texture_fraction,
+                              std::int64_t normal_fraction, int view_distance_fraction) {
+    parameters.texture_step = std::ldexp(1.0, -static_cast<int>(texture_fraction));
+    parameters.direction_step = std::ldexp(1.0, -static_cast<int>(normal_fraction));
+    parameters.distance_step = std::ldexp(1.0, -view_distance_fraction);
     return parameters;
 }
 
@@ -142,9 +143,11 @@ void GoldenSurface::add(const golden::Triangle& t) {
     triangles.push_back({v[0].displaced_position, v[1].displaced_position, v[2].displaced_position});
 }
 
-GoldenRun::GoldenRun(const MachineSetup& setup, const GoldenJob& golden,
-                     const std::vector<std::uint32_t>& base_triangles, std::uint64_t most)
-    : setup_(setup), golden_(golden), parameters_(with_steps_of_formats(golden.parameters(), setup)), most_(most) {
+GoldenRun::GoldenRun(const GoldenJob& golden, const std::vector<std::uint32_t>& base_triangles, std::uint64_t most)
+    : golden_(golden),
+      parameters_(with_steps(golden.parameters(), golden.job().formats.texture_fraction,
+                             golden.job().formats.normal_fraction, golden.view_distance_fraction())),
+      most_(most) {
     const double step = parameters_.texture_step;
     base_.reserve(base_triangles.size());
     for (const std::uint32_t triangle : base_triangles) {
@@ -166,7 +169,8 @@ GoldenRun::~GoldenRun() {
     most_ = 0;
 }
 
-EndToEndResult GoldenRun::compare(const EmittedMesh& hardware, double allowed_triangles, const Told& progress) {
+EndToEndResult GoldenRun::compare(const MachineSetup& setup, const EmittedMesh& hardware, double allowed_triangles,
+                                  const Told& progress) {
     const std::uint64_t bound = bound_of(hardware);
     most_ = std::min(most_.load(), bound);
     GoldenSurface surface = surface_.get();
@@ -175,13 +179,15 @@ EndToEndResult GoldenRun::compare(const EmittedMesh& hardware, double allowed_tr
         surface = run_golden(base_, golden_.map(), parameters_, bound);
     }
     return tessera::compare(
-        setup_, surface, hardware,
-        allowed_after(surface.run.largest_generation, setup_, golden_.scene(), base_, allowed_triangles), progress);
+        setup, surface, hardware,
+        allowed_after(surface.run.largest_generation, setup, golden_.scene(), base_, allowed_triangles), progress);
 }
 
 EndToEndResult compare_end_to_end(const MachineSetup& setup, const GoldenInputs& inputs, const EmittedMesh& hardware) {
-    const GoldenSurface surface = run_golden(golden_base_triangles(setup), inputs.map,
-                                             with_steps_of_formats(inputs.parameters, setup), bound_of(hardware));
+    const datapath::Formats& formats = setup.registers.formats;
+    const golden::Parameters parameters = with_steps(inputs.parameters, formats.texture.fraction,
+                                                     formats.normal.fraction, formats.view_distance.fraction);
+    const GoldenSurface surface = run_golden(golden_base_triangles(setup), inputs.map, parameters, bound_of(hardware));
     return compare(setup, surface, hardware, {}, nullptr);
 }
 

@@ -83,10 +83,10 @@ struct GoldenSurface {
 /// The run begins at once, beside the simulation, whose mesh then bounds it. The result depends on the meshes alone.
 class GoldenRun {
   public:
-    /// `setup` and `golden` must outlive it.
+    /// `golden` must outlive it.
     /// `base_triangles`: indices of those triangles of the mesh that the machine received (SetupResult).
     /// `most`: number of triangles at which the run waits for the hardware's mesh.
-    GoldenRun(const MachineSetup& setup, const GoldenJob& golden, const std::vector<std::uint32_t>& base_triangles,
+    GoldenRun(const GoldenJob& golden, const std::vector<std::uint32_t>& base_triangles,
               std::uint64_t most = UINT64_MAX);
     ~GoldenRun();
     GoldenRun(const GoldenRun&) = delete;
@@ -102,11 +102,10 @@ class GoldenRun {
     /// largest displacement; the second term is 0 for a plane perpendicular to an axis, whose normals are exact. h: at
     /// a point of a base triangle, |a n - b m| <= |a - b| + |b| |n - m| for displacements a, b along normals n, m of
     /// the triangle.
-    EndToEndResult compare(const EmittedMesh& hardware, double allowed_triangles,
+    EndToEndResult compare(const MachineSetup& setup, const EmittedMesh& hardware, double allowed_triangles,
                            const std::function<void(double)>& progress = nullptr);
 
   private:
-    const MachineSetup& setup_;
     const GoldenJob& golden_;
     golden::Parameters parameters_;
     std::vector<std::array<golden::Vertex, 3>> base_;

@@ -25,9 +25,9 @@ golden::Filter golden_filter(datapath::MapFilter filter) {
     return filter == datapath::MapFilter::bilinear ? golden::Filter::bilinear : golden::Filter::nearest;
 }
 
-void set_heights(golden::Map& map, const PreparedScene& prepared) {
-    if (!prepared.fitted_heights.empty())
-        map.set_heights({prepared.fitted_heights.begin(), prepared.fitted_heights.end()});
+void set_heights(golden::Map& map, const std::vector<std::uint16_t>& fitted) {
+    if (!fitted.empty())
+        map.set_heights({fitted.begin(), fitted.end()});
 }
 
 namespace {
@@ -45,7 +45,7 @@ golden::Map golden_map(const MachineSetup& setup) {
             normals.push_back(dequantise.direction(
                 map_normal(setup.map, x, y, setup.height_per_code, setup.texel_size, setup.registers.formats.normal)));
     map.set_normals(std::move(normals));
-    set_heights(map, setup);
+    set_heights(map, setup.fitted_heights);
     map.set_height_test(check_of(setup.registers.formats.height_test).of_machine(setup, map));
     return map;
 }

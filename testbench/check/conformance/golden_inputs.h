@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <glm/glm.hpp>
 #include <vector>
 
@@ -53,7 +54,7 @@ golden::Diagonal golden_diagonal(datapath::Triangulation choice);
 golden::Filter golden_filter(datapath::MapFilter filter);
 
 /// Fitted heights, which golden takes as given.
-void set_heights(golden::Map& map, const PreparedScene& prepared);
+void set_heights(golden::Map& map, const std::vector<std::uint16_t>& fitted);
 
 /// The registers, but for the height test's, as the golden model's parameters. Exact except for the transform's fourth column and the near plane,
 /// 64 bit integers that a double rounds to 53 bits.

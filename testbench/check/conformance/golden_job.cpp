@@ -124,18 +124,19 @@ const Job& resolved(const Job& job) {
 }  // namespace
 
 GoldenJob::GoldenJob(const Job& job, const BaseMesh& mesh, const HeightMap& height_map, const ModelScale& model_scale,
-                     const PreparedScene& tables)
+                     const TakenFromHost& taken)
     : job_(resolved(job)),
       mesh_(mesh),
       height_map_(height_map),
       frames_(frames_of(mesh)),
       own_heights_(own_heights(job_, height_map)),
       code_range_(code_range_of(job_, height_map, heights())),
+      view_distance_fraction_(taken.view_distance_fraction),
       scene_(make_scene(job_, frames_.size, height_map, heights(), code_range_, model_scale)),
       parameters_(golden::make_parameters(scene_)),
       map_(make_map(job_, height_map, heights(), code_range_, frames_.size, scene_, parameters_.scale)) {
-    set_heights(map_, tables);
-    map_.set_height_test(check_of(job_.hardware.height_test).of_job(*this, tables));
+    set_heights(map_, taken.fitted_heights);
+    map_.set_height_test(check_of(job_.hardware.height_test).of_job(*this, taken));
 }
 
 golden::Vertex GoldenJob::vertex(std::uint32_t triangle, std::size_t corner) const {

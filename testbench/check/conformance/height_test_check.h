@@ -23,8 +23,8 @@ class HeightTestCheck {
 
     /// From the registers and the host's table, dequantised.
     virtual Golden of_machine(const MachineSetup& setup, const golden::Map& map) const = 0;
-    /// From the job, without the registers. tables: what golden takes as given.
-    virtual Golden of_job(const GoldenJob& golden, const PreparedScene& tables) const = 0;
+    /// From the job, without the registers.
+    virtual Golden of_job(const GoldenJob& golden, const TakenFromHost& taken) const = 0;
 
     virtual void check_thresholds(const datapath::Registers& registers, const GoldenJob& golden,
                                   setup_check::Judge& judge) const = 0;

@@ -15,7 +15,7 @@ class RangeCheck : public tessera::HeightTestCheck {
     Golden of_machine(const tessera::MachineSetup& setup, const tessera::golden::Map& map) const override {
         return std::make_shared<GoldenRange>(map, static_cast<double>(setup.registers.tests.height_thresholds[0]));
     }
-    Golden of_job(const tessera::GoldenJob& golden, const tessera::PreparedScene&) const override {
+    Golden of_job(const tessera::GoldenJob& golden, const tessera::TakenFromHost&) const override {
         return std::make_shared<GoldenRange>(
             golden.map(), golden.job().tests.threshold("range_threshold") * golden.scene().highest_code);
     }

@@ -35,8 +35,8 @@ class CurvatureCheck : public HeightTestCheck {
         return test_of(setup.curvature_table,
                        std::ldexp(number(setup.registers.tests.height_thresholds[0]), -datapath::curvature_fraction));
     }
-    Golden of_job(const GoldenJob& golden, const PreparedScene& tables) const override {
-        return test_of(tables.curvature_table,
+    Golden of_job(const GoldenJob& golden, const TakenFromHost& taken) const override {
+        return test_of(taken.curvature_table,
                        golden.job().tests.threshold("curvature_threshold") * golden.scene().highest_code);
     }
 

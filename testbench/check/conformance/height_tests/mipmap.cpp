@@ -31,7 +31,7 @@ class MipmapCheck : public HeightTestCheck {
                        std::ldexp(number(setup.registers.tests.height_thresholds[0]), -1));
     }
     /// The filter as the job has it, not as the host.
-    Golden of_job(const GoldenJob& golden, const PreparedScene&) const override {
+    Golden of_job(const GoldenJob& golden, const TakenFromHost&) const override {
         const TestSettings& tests = golden.job().tests;
         return test_of(golden.map(), tests.mipmap_filter,
                        tests.threshold("mipmap_threshold") * golden.scene().highest_code);

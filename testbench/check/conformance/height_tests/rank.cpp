@@ -17,12 +17,11 @@ using namespace setup_check;
 
 namespace {
 
-golden::RankTable table_of(const PreparedScene& prepared) {
-    const RankTables& ranks = prepared.rank_tables;
+golden::RankTable table_of(const RankTables& ranks, int texture_fraction) {
     std::vector<glm::dvec2> midpoints;
     midpoints.reserve(ranks.midpoints.size());
     for (const datapath::TexCoord& t : ranks.midpoints)
-        midpoints.push_back(glm::dvec2(t.u, t.v) * std::ldexp(1.0, -prepared.registers.formats.texture.fraction));
+        midpoints.push_back(glm::dvec2(t.u, t.v) * std::ldexp(1.0, -texture_fraction));
     return {ranks.columns,       ranks.rows,   ranks.rank,
             ranks.bound,         ranks.radius, static_cast<int>(ranks.highest_bound_threshold),
             std::move(midpoints)};
@@ -66,7 +65,6 @@ const golden::RankTest& test_of(const GoldenJob& golden) {
 golden::DerivedRanks derived_ranks(const MachineSetup& setup, const GoldenJob& golden, SetupResult& result) {
     const golden::RankTable& table = test_of(golden).table();
     const golden::RankSettings& settings = test_of(golden).settings();
-    const datapath::Formats& formats = setup.registers.formats;
     golden::RankSource source;
     source.base = base_texels(setup, golden, result);
     Judge judge(result, "table's extent", "texels that the base mesh covers; the order of bisections");
@@ -88,10 +86,12 @@ golden::DerivedRanks derived_ranks(const MachineSetup& setup, const GoldenJob& g
     if (!sorted.empty() && sorted.back() >= entries)
         return {};
     if (settings.view != golden::RankView::none && source.bound_bits > 0) {
-        const double last_place = std::ldexp(1.0, -formats.view_distance.fraction);
+        const double last_place = std::ldexp(1.0, -golden.view_distance_fraction());
         source.radii = true;
         source.steps = glm::dvec3(golden.texel_size(), std::abs(golden.parameters().scale)) / last_place;
-        source.rounding = 4 + 32 * std::sqrt(3.0) * std::ldexp(1.0, -formats.position.fraction) / last_place;
+        source.rounding = 4 + 32 * std::sqrt(3.0) *
+                                  std::ldexp(1.0, -static_cast<int>(golden.job().formats.position_fraction)) /
+                                  last_place;
     }
     golden::DerivedRanks ranks = golden::derive_ranks(golden.map(), source);
     judge.require(ranks.fault.empty(), [&] { return ranks.fault; });
@@ -114,16 +114,16 @@ class RankCheck : public HeightTestCheck {
             settings.rank_threshold += octaves_of_step(formats) * rank_per_octave(settings.view);
             settings.bound_threshold += octaves_of_step(formats) * bound_per_octave;
         }
-        return std::make_shared<golden::RankTest>(table_of(setup), settings);
+        return std::make_shared<golden::RankTest>(table_of(setup.rank_tables, formats.texture.fraction), settings);
     }
-    Golden of_job(const GoldenJob& golden, const PreparedScene& tables) const override {
+    Golden of_job(const GoldenJob& golden, const TakenFromHost& taken) const override {
         const TestSettings& tests = golden.job().tests;
         const Job::Formats& formats = golden.job().formats;
         golden::RankSettings settings = golden::on_scales(
             {tests.threshold("rank_threshold"), tests.threshold("bound_threshold"), static_cast<int>(formats.rank_bits),
              static_cast<int>(formats.bound_bits), golden_view(tests.rank_view)},
             golden.scene(), formats.bound_bits > 0 ? code_rounding(golden) : 0);
-        golden::RankTable table = table_of(tables);
+        golden::RankTable table = table_of(taken.rank_tables, static_cast<int>(formats.texture_fraction));
         if (settings.view == golden::RankView::none)
             settings.bound_threshold = std::min(settings.bound_threshold, number(table.highest_bound_threshold));
         return std::make_shared<golden::RankTest>(std::move(table), settings);

@@ -19,7 +19,7 @@ class SummedHeightCheck : public HeightTestCheck {
         return std::make_shared<golden::SummedHeightTest>(std::ldexp(number(tests.height_thresholds[0]), area ? 0 : -2),
                                                           area);
     }
-    Golden of_job(const GoldenJob& golden, const PreparedScene&) const override {
+    Golden of_job(const GoldenJob& golden, const TakenFromHost&) const override {
         return std::make_shared<golden::SummedHeightTest>(threshold(golden), area(golden));
     }
 

@@ -43,7 +43,7 @@ void expect_conformance(const Job& asked, const HeightMap& map) {
     INFO(host.first_wrong);
     CHECK(host.passed());
     const EndToEndResult meshes =
-        GoldenRun(setup, golden, host.base_triangles).compare(simulation.monitor.mesh, Job::Check{}.allowed_triangles);
+        GoldenRun(golden, host.base_triangles).compare(setup, simulation.monitor.mesh, Job::Check{}.allowed_triangles);
     CHECK_FALSE(meshes.bound_hit);
     CHECK(std::abs(meshes.more_triangles()) < Job::Check{}.allowed_triangles);
     CHECK(meshes.passed());

@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <regex>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -11,6 +13,8 @@
 #include "testbench/tests/check/conformance/setup_run.h"
 #include "testbench/tests/support/case_table.h"
 #include "testbench/tests/support/job_settings.h"
+#include "testbench/tests/support/source_folder.h"
+#include "testbench/tests/support/test_folder.h"
 
 using namespace tessera;
 using Catch::Contains;
@@ -39,6 +43,22 @@ void scale_bounds(MachineSetup& setup, double by) {
             bound = static_cast<std::uint16_t>(std::lround(bound + steps));
 }
 
+void require_noticed(const TableFault& fault, const std::string& settings) {
+    Job job = testing::with_settings({}, "map.source=noise map.width=60 map.height=44 " + settings);
+    job.mode = Mode::functional;
+    const Inputs inputs = load_inputs(job);
+    const Job& resolved = inputs.resolved.job;
+    MachineSetup setup = make_setup(resolved, inputs.mesh, inputs.map);
+    fault.make(setup);
+    const GoldenJob golden(resolved, inputs.mesh, inputs.map, setup.model_scale, setup);
+    Simulation simulation(setup, 1000000);
+    REQUIRE(simulation.run().empty());
+    const SetupResult result = check_setup(setup, golden, simulation);
+    INFO(result.first_wrong);
+    CHECK(result.wrong() > 0);
+    CHECK_THAT(result.first_wrong, Contains(fault.noticed));
+}
+
 const testing::CaseTable table_faults(
     "golden's own Rank Table: ",
     {TableFault{"bounds 3 % too small", [](MachineSetup& s) { scale_bounds(s, 0.97); }, ".bound"},
@@ -58,24 +78,19 @@ const testing::CaseTable table_faults(
       "highest_bound_threshold"},
      {"its columns", [](MachineSetup& s) { ++s.rank_tables.columns; }, "columns"}},
     [](const TableFault& fault) {
-        Job job = testing::with_settings(
-            {},
-            "map.source=noise hardware.height_test=rank mesh.source=lattice mesh.spacing=16 map.width=60 map.height=44 "
-            "formats.bound_bits=16 formats.rank_bits=16 hardware.test_order=cheap_first tests.rank_view=per_point "
-            "hardware.triangulation=greatest_rank map.address_v=clamp");
-        job.mode = Mode::functional;
-        const Inputs inputs = load_inputs(job);
-        const Job& resolved = inputs.resolved.job;
-        MachineSetup setup = make_setup(resolved, inputs.mesh, inputs.map);
-        fault.make(setup);
-        const GoldenJob golden(resolved, inputs.mesh, inputs.map, setup.model_scale, setup);
-        Simulation simulation(setup, 1000000);
-        REQUIRE(simulation.run().empty());
-        const SetupResult result = check_setup(setup, golden, simulation);
-        INFO(result.first_wrong);
-        CHECK(result.wrong() > 0);
-        CHECK_THAT(result.first_wrong, Contains(fault.noticed));
+        require_noticed(
+            fault,
+            "hardware.height_test=rank mesh.source=lattice mesh.spacing=16 formats.bound_bits=16 formats.rank_bits=16 "
+            "hardware.test_order=cheap_first tests.rank_view=per_point hardware.triangulation=greatest_rank "
+            "map.address_v=clamp");
     });
+
+const testing::CaseTable curvature_faults(
+    "golden's own Curvature Table: ",
+    {TableFault{"one entry", [](MachineSetup& s) { ++s.curvature_table.entries[100]; }, "curvature table: 100."},
+     {"an entry left out", [](MachineSetup& s) { s.curvature_table.entries.pop_back(); }, "curvature_table.columns"},
+     {"its columns", [](MachineSetup& s) { ++s.curvature_table.covered.width; }, "columns"}},
+    [](const TableFault& fault) { require_noticed(fault, "hardware.height_test=curvature"); });
 
 struct DerivedTable {
     std::string name, settings;
@@ -109,3 +124,42 @@ const testing::CaseTable derived_tables(
     });
 
 }  // namespace
+
+TEST_CASE("golden takes from the host only what its specification lists, each with a test") {
+    const auto text = [](const char* file) { return read_all(source_folder() / file); };
+    const auto all = [](const std::string& from, const char* pattern) {
+        std::multiset<std::string> found;
+        const std::regex matcher(pattern);
+        for (std::sregex_iterator it(from.begin(), from.end(), matcher), end; it != end; ++it)
+            found.insert((*it)[1]);
+        return found;
+    };
+    const auto between = [](const std::string& in, const std::string& start, const std::string& end) {
+        const std::size_t at = in.find(start);
+        REQUIRE(at != std::string::npos);
+        return in.substr(at + start.size(), in.find(end, at + start.size()) - at - start.size());
+    };
+    const std::string job = text("testbench/check/conformance/golden_job.h");
+    std::multiset<std::string> taken =
+        all(between(between(job, "struct TakenFromHost {", "};"), "}", "$"), R"((\w+);)");
+    const char* const argument = R"((\w+)(?: = [^,]*)?(?:,|$))";
+    taken.merge(all(between(job, "    GoldenJob(", ");"), argument));
+    taken.merge(all(between(text("testbench/check/conformance/end_to_end.h"), "    GoldenRun(", ");"), argument));
+    for (const char* const other : {"taken", "golden", "most"})  // these members; its own inputs; a limit
+        REQUIRE(taken.erase(other) == 1);
+
+    const std::string table = between(text("golden/ALGORITHM.md"), "| taken |", "\n\n");
+    CHECK(all(table, R"(\n\| `(\w+)`)") == taken);
+
+    std::string tests;
+    for (const auto& file : std::filesystem::recursive_directory_iterator(source_folder() / "testbench/tests"))
+        if (file.path().extension() == ".cpp")
+            tests += read_all(file.path());
+    const auto named = all(table, R"(\| ([^|\n]*[^-|\n ]) \|(?=\n|$))");
+    CHECK(named.size() == 11);
+    for (const std::string& name : named)
+        if (name != "test (first words)") {
+            INFO(name);
+            CHECK(tests.find('"' + name) != std::string::npos);
+        }
+}

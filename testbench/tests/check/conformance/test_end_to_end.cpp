@@ -369,7 +369,7 @@ TEST_CASE("on a cylinder the allowed distance includes the rounding and turning 
     SetupRun run{job};
     const SetupResult checked = run.check();
     const EndToEndResult result =
-        GoldenRun(run.setup, run.golden, checked.base_triangles).compare(run.simulation.monitor.mesh, 1);
+        GoldenRun(run.golden, checked.base_triangles).compare(run.setup, run.simulation.monitor.mesh, 1);
     CHECK(result.passed());
     REQUIRE(result.golden_largest_generation == 4);
     CHECK(result.allowed.rounding == Approx(std::sqrt(3.0) * (4 * std::ldexp(1.0, -16) / run.setup.model_scale.scale +

@@ -514,7 +514,7 @@ TEST_CASE("the golden run is judged by its triangles, the distance of the surfac
     SetupRun run{job};
     const SetupResult checked = run.check();
     const auto compare = [&](const EmittedMesh& mesh, double allowed) {
-        return GoldenRun(run.setup, run.golden, checked.base_triangles).compare(mesh, allowed);
+        return GoldenRun(run.golden, checked.base_triangles).compare(run.setup, mesh, allowed);
     };
     EmittedMesh mesh = run.simulation.monitor.mesh;
     const EndToEndResult right = compare(mesh, 1);
@@ -529,7 +529,7 @@ TEST_CASE("the golden run is judged by its triangles, the distance of the surfac
     CHECK(right.farther() < 0.1);
 
     std::vector<double> told;
-    GoldenRun(run.setup, run.golden, checked.base_triangles).compare(mesh, 1, [&](double part) {
+    GoldenRun(run.golden, checked.base_triangles).compare(run.setup, mesh, 1, [&](double part) {
         told.push_back(part);
     });
     CHECK(told == std::vector<double>{0.5, 1});
@@ -571,14 +571,14 @@ TEST_CASE("the golden run is judged by its triangles, the distance of the surfac
     for (const std::size_t threads : {1U, 2U})
         for (const std::uint64_t most : {std::uint64_t{0}, std::uint64_t{100}, UINT64_MAX}) {
             const OnThreads on(threads);
-            GoldenRun golden_run(run.setup, run.golden, checked.base_triangles, most);
-            const EndToEndResult again = golden_run.compare(mesh, 1000);
+            GoldenRun golden_run(run.golden, checked.base_triangles, most);
+            const EndToEndResult again = golden_run.compare(run.setup, mesh, 1000);
             CHECK(again.golden_triangles == stopped.golden_triangles);
             CHECK(again.golden_edges == stopped.golden_edges);
             CHECK(again.golden_largest_generation == stopped.golden_largest_generation);
             CHECK(again.bound_hit);
-            GoldenRun whole(run.setup, run.golden, checked.base_triangles, most);
-            const EndToEndResult same = whole.compare(run.simulation.monitor.mesh, 1);
+            GoldenRun whole(run.golden, checked.base_triangles, most);
+            const EndToEndResult same = whole.compare(run.setup, run.simulation.monitor.mesh, 1);
             CHECK(same.golden_edges == right.golden_edges);
             CHECK(same.rms_model() == right.rms_model());
         }
