@@ -2,7 +2,9 @@
 #include <catch2/catch.hpp>
 #include <iostream>
 #include <iterator>
+#include <map>
 #include <regex>
+#include <sstream>
 
 #include "modules/version.h"
 #include "testbench/tests/support/program_runner.h"
@@ -452,6 +454,67 @@ TEST_CASE("a missing component, a missing package and another C++ standard are r
         require_success(client("datapath", from + no_systemc_package + Arguments{"-DCMAKE_CXX_STANDARD=20"}),
                         folder.path(), no_systemc);
         require_success({"cmake", "--build", "build"}, folder.path());
+    }
+}
+
+TEST_CASE("libraries are accepted at both ends of the range in README, refused below it and warned of beyond it") {
+    const TestFolder folder(scratch);
+    const fs::path list = source_folder() / "cmake/tessera_libraries.cmake", readme = source_folder() / "README.md";
+    write_all(folder.path() / "find.cmake",
+              "cmake_minimum_required(VERSION 3.21)\ninclude(\"" + list.string() +
+                  "\")\nfile(WRITE ${name}Config.cmake \"set(${name}_VERSION ${version})\\n\")\n"
+                  "tessera_find(${name} CONFIG PATHS . NO_DEFAULT_PATH ${required})\n"
+                  "if(NOT ${name}_FOUND)\nmessage(\"left out: ${tessera_not_found}\")\nendif()\n");
+    const auto find = [&](const std::string& name, const std::string& version, const std::string& required) {
+        return run({"cmake", "-Dname=" + name, "-Dversion=" + version, "-Drequired=" + required, "-P", "find.cmake"},
+                   folder.path());
+    };
+    const std::string text = read_all(list), table = read_all(readme);
+    const std::regex row(R"(\n  (\w+) +(\S+) +(\d+(?:\.\d+)*) +(\d+)((?:\.\d+)*) +\w+)");
+    int libraries = 0;
+    for (std::sregex_iterator it(text.begin(), text.end(), row), none; it != none; ++it, ++libraries) {
+        const std::string name = (*it)[1], package = (*it)[2], least = (*it)[3], major = (*it)[4];
+        const std::string newest = major + std::string((*it)[5]), beyond = std::to_string(std::stoi(major) + 1) + ".0";
+        std::string before = least;  // its last number, which is not 0, less one
+        const std::size_t last = least.rfind('.') + 1;
+        before.replace(last, std::string::npos, std::to_string(std::stoi(least.substr(last)) - 1));
+        INFO(name);
+        for (const std::string& version : {least, newest}) {
+            const ProgramEnd found = find(name, version, "REQUIRED");
+            INFO(found.text());
+            CHECK(found.exit_code == 0);
+            CHECK((found.out + found.err).empty());
+        }
+        const ProgramEnd old = find(name, before, "REQUIRED"), optional = find(name, before, "QUIET");
+        CHECK(old.exit_code != 0);
+        for (const ProgramEnd& end : {old, optional})
+            CHECK_THAT(without_line_breaks(end.err), Contains("older than " + least + ". On Debian 12 or 13: ") &&
+                                                         Contains("apt-get install " + package));
+        CHECK(optional.exit_code == 0);
+        const ProgramEnd later = find(name, beyond, "REQUIRED");
+        CHECK(later.exit_code == 0);
+        CHECK_THAT(without_line_breaks(later.err), Contains("CMake Warning") && Contains(least + " to " + newest));
+    }
+    CHECK(libraries == 12);
+
+    std::map<std::string, std::string> columns{
+        {"Embree", "embree"}, {"toml++", "tomlplusplus"}, {"nlohmann json", "nlohmann_json"}};
+    const auto cells = [&](const std::string& start) {
+        const std::size_t at = table.find("\n| " + start);
+        REQUIRE(at != std::string::npos);
+        std::istringstream line(table.substr(at + 2, table.find('\n', at + 1) - at - 2));
+        std::vector<std::string> found;
+        for (std::string cell; std::getline(line, cell, '|');)
+            found.push_back(std::regex_replace(cell, std::regex("^ | $"), ""));
+        return found;
+    };
+    const auto names = cells("| compiler"), oldest = cells("Debian 12 |"), newest = cells("Debian 13 |");
+    REQUIRE(names.size() == 10);
+    for (std::size_t k = 2; k < names.size(); ++k) {
+        const std::string name = columns.count(names[k]) > 0 ? columns.at(names[k]) : names[k];
+        INFO(name);
+        CHECK(
+            std::regex_search(text, std::regex("\n  " + name + " +\\S+ +" + oldest.at(k) + " +" + newest.at(k) + " ")));
     }
 }
 
