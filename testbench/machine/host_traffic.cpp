@@ -41,7 +41,9 @@ HostTraffic next_frame_traffic(const MachineSetup& before, const MachineSetup& n
     if (before.heights() == now.heights())
         traffic.displacement_map = 0;
     if (before.map.codes == now.map.codes) {
-        traffic.summed_height_table = 0;
+        // a Rank Table's radii depend on the displacement scale and the format of distances, too
+        if (before.rank_tables.radius == now.rank_tables.radius)
+            traffic.summed_height_table = 0;
         // the normals follow from heights and texels' sizes, of which only the quotients matter
         if (before.height_per_code / before.texel_size[0] == now.height_per_code / now.texel_size[0] &&
             before.height_per_code / before.texel_size[1] == now.height_per_code / now.texel_size[1])

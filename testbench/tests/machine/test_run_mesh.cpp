@@ -202,6 +202,22 @@ TEST_CASE("another scale: the host sends the normal map, S and the base mesh aga
     CHECK(next_frame_traffic(low, low).total() == first.base_mesh);
 }
 
+TEST_CASE("another scale: a Rank Table's radii are sent again, ranks and bounds alone are not") {
+    const auto table_sent = [](RankView view) {
+        Job job = without_automatic({});
+        job.hardware.height_test = HeightTest::rank;
+        job.formats.bound_bits = 8;
+        job.tests.rank_view = view;
+        const auto setup_of_scale = [&](double scale) {
+            job.displacement.scale = scale;
+            return make_setup(job, make_plane(2, 2, 2, 2), half_donut_map(64, 64));
+        };
+        return next_frame_traffic(setup_of_scale(0.2), setup_of_scale(0.25)).summed_height_table;
+    };
+    CHECK(table_sent(RankView::none) == 0);
+    CHECK(table_sent(RankView::per_point) > 64 * 64);
+}
+
 TEST_CASE("the host sends the binary point of w and the Highlight Test's values as registers") {
     const MachineSetup before = setup_of(0.2);
     MachineSetup now = before;
