@@ -7,11 +7,13 @@
 #include <string_view>
 #include <utility>
 
+#include "modules/datapath/height_tests.h"
 #include "modules/memories/line_cache.h"
 #include "modules/timing/height_test_timing.h"
 #include "testbench/job/design_preset.h"
 #include "testbench/job/job_keys.h"
 #include "testbench/job/toml_text.h"
+#include "testbench/setup/height_tests/height_test_host.h"
 
 namespace tessera {
 
@@ -83,10 +85,41 @@ struct Idle {
     std::string because;
 };
 
+/// Of the edge tests: a key belongs to the test that its name begins with, a threshold to that which declares it.
+std::vector<Idle> idle_test_keys(const Job& job, const datapath::Formats& formats) {
+    std::vector<Idle> idle;
+    for (const Key& key : find_table("tests")->keys)
+        if (const JobValue on = key.get(job); std::holds_alternative<bool>(on) && !std::get<bool>(on))
+            idle.push_back({{key.name + '_'}, key.name + " = false"});
+    const datapath::HeightTestFunctions& chosen = datapath::functions_of(formats.height_test);
+    const std::string because = fmt::format("hardware.height_test = \"{}\"", chosen.name);
+    for (std::size_t k = 0; k < height_test_hosts().size(); ++k) {
+        const datapath::HeightTestFunctions& test = *datapath::height_tests()[k];
+        if (&test != &chosen)
+            idle.push_back({{fmt::format("tests.{}_", test.name)}, because});
+        const auto registers = test.thresholds(formats);
+        for (const HeightThresholdKey& key : height_test_hosts()[k]->thresholds()) {
+            const bool compared = std::any_of(registers.begin(), registers.end(), [&](const auto& its) {
+                return its.name != nullptr && its.name == std::string_view(key.name) && its.bits > 0;
+            });
+            const std::string name = std::string("tests.") + key.name;
+            if (&test != &chosen)
+                idle.push_back({{name}, because});
+            else if (!job.tests.summed_height)
+                idle.push_back({{name}, "tests.summed_height = false"});
+            else if (!compared)
+                idle.push_back({{name}, "the height test's table has no entries to compare with it"});
+        }
+    }
+    return idle;
+}
+
 std::vector<Idle> idle_keys(const Job& job, const MachineSetup& setup) {
+    std::vector<Idle> idle = idle_test_keys(job, setup.registers.formats);
+    if (job.mode != Mode::timed)
+        return idle;
     const datapath::HeightTest height_test = setup.registers.formats.height_test;
     const Design& design = setup.design;
-    std::vector<Idle> idle;
     const auto unless = [&](bool used, std::vector<std::string> keys, std::string because) {
         if (!used)
             idle.push_back({std::move(keys), std::move(because)});
@@ -118,23 +151,27 @@ std::vector<Idle> idle_keys(const Job& job, const MachineSetup& setup) {
 
 std::vector<std::string> design_remarks(const Job& job, const MachineSetup& setup) {
     std::vector<std::string> remarks;
-    if (job.mode != Mode::timed)
-        return remarks;
-    for (const SizedTable& table : sized_tables(setup))
-        for (std::string& remark : std::vector{cache_remark(table), width_remark(table)})
-            if (!remark.empty())
-                remarks.push_back(std::move(remark));
+    if (job.mode == Mode::timed)
+        for (const SizedTable& table : sized_tables(setup))
+            for (std::string& remark : std::vector{cache_remark(table), width_remark(table)})
+                if (!remark.empty())
+                    remarks.push_back(std::move(remark));
     Job preset;
     preset.hardware.design = job.hardware.design;
     apply_design(preset);
-    for (const Idle& idle : idle_keys(job, setup))
-        for (const char* const name : {"hardware", "timing"})
-            for (const Key& key : find_table(name)->keys) {
-                const auto begins = [&](const std::string& with) { return key.name.rfind(with, 0) == 0; };
-                const std::string value = toml_value(key.get(job));
-                if (std::any_of(idle.keys.begin(), idle.keys.end(), begins) && value != toml_value(key.get(preset)))
-                    remarks.push_back(fmt::format("{} = {} has no effect: {}", key.name, value, idle.because));
-            }
+    const std::vector<Idle> idle = idle_keys(job, setup);
+    for (const char* const name : {"tests", "hardware", "timing"})
+        for (const Key& key : find_table(name)->keys) {
+            const std::string value = toml_value(key.get(job)), setting = fmt::format("{} = {}", key.name, value);
+            const auto why = std::find_if(idle.begin(), idle.end(), [&](const Idle& it) {
+                return std::any_of(it.keys.begin(), it.keys.end(),
+                                   [&](const std::string& with) { return key.name.rfind(with, 0) == 0; });
+            });
+            const bool said = std::any_of(setup.remarks.begin(), setup.remarks.end(),
+                                          [&](const std::string& remark) { return remark.rfind(setting, 0) == 0; });
+            if (why != idle.end() && value != toml_value(key.get(preset)) && !said)
+                remarks.push_back(fmt::format("{} has no effect: {}", setting, why->because));
+        }
     return remarks;
 }
 

@@ -154,6 +154,13 @@ TEST_CASE("timed run: a key without effect in the design is noted, and has none"
     without_effect({}, "timing.highlight_test_latency", "7");
     without_effect({}, "timing.stalls_seed", "5");
     without_effect({}, "hardware.off_chip_triangles", "5");
+    without_effect({}, "tests.rank_threshold", "0.2");
+    without_effect({}, "tests.highlight_angle", "60.0");
+    without_effect({"tests.view=false"}, "tests.view_threshold", "9.0");
+    without_effect({"mode=functional", "hardware.height_test=curvature"}, "tests.summed_height_unit", "\"area\"");
+    without_effect({"hardware.height_test=mipmap", "tests.summed_height=false"}, "tests.mipmap_threshold", "0.5");
+    without_effect({"hardware.height_test=rank", "formats.rank_bits=0", "formats.bound_bits=8"}, "tests.rank_threshold",
+                   "0.2");
     without_effect({"hardware.design=modern", "hardware.height_test=rank", "mesh.source=lattice", "mesh.spacing=16"},
                    "timing.summed_height_table_latency", "3");
 }
