@@ -8,9 +8,9 @@
 
 namespace tessera {
 
-/// Distance from a point to the facets of the reference lattice. Tiles are found by their boxes and evaluated on
-/// demand; a few thousand (about 50 MB) are cached. The result depends on the lattice alone. Fast if successive points
-/// are neighbours in space.
+/// Distance from a point to the facets of the reference lattice, walls included. Tiles are found by their boxes and
+/// evaluated on demand; 512 (16 MB) are cached. The result depends on the lattice alone. Fast if successive points are
+/// neighbours in space.
 class ReferenceNearest {
   public:
     /// `boxes`: the boxes of the lattice's tiles, in order. Both must outlive this.
