@@ -10,9 +10,9 @@
 
 namespace tessera {
 
-/// Records every finished triangle of all machines' Pass or Tessellate. Stops the simulation at `limit` triangles, or once
-/// there will be more: each edge that is cut adds one, so that a recursion without end stops before the queue fills the
-/// memory. With back-face culling only finished triangles count, since any number of the others may be culled.
+/// Records every finished triangle of all machines' Pass or Tessellate, culled ones too. Stops the simulation at `limit`
+/// triangles, or once there will be more: each edge that is cut adds one, so that a recursion without end stops before
+/// the queue fills the memory.
 class MeshMonitor : public sc_core::sc_object,
                     public tlm::tlm_analysis_if<datapath::Triangle>,
                     public tlm::tlm_analysis_if<datapath::TrianglePass> {
@@ -42,7 +42,7 @@ class MeshMonitor : public sc_core::sc_object,
     void write(const datapath::TrianglePass& pass) override {
         for (unsigned split = pass.split; split != 0; split &= split - 1)
             ++cut_;
-        if (cut_ >= limit_ && !back_face_culling_)
+        if (cut_ >= limit_)
             stop();
     }
 

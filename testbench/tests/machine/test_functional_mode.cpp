@@ -138,6 +138,15 @@ TEST_CASE("the triangle limit ends a run with a message that names its key") {
     CHECK(simulation.monitor.mesh.triangles.size() == 500);
 }
 
+TEST_CASE("a recursion without end is stopped before a triangle is finished, with culling too") {
+    const MachineSetup setup = functional_setup(
+        "map.source=noise tests.normal_threshold=0 tests.view=false tests.tex_coord=false tests.generation=false "
+        "hardware.culling=back");
+    Simulation simulation(setup, 500);
+    CHECK_THROWS_AS(simulation.run(), ResourceError);
+    CHECK(simulation.monitor.mesh.triangles.empty());
+}
+
 TEST_CASE("a machine that is stopped with triangles in its queue is not idle") {
     // a base triangle that makes more than go without a pause
     const MachineSetup setup = functional_setup("mesh.columns=1 mesh.rows=1");
