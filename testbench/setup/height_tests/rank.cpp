@@ -47,10 +47,13 @@ void remark_on_base(const std::vector<TextureTriangle>& base, PreparedScene& sce
                         tables.clashes));
     if (!limits.empty())
         scene.remarks.push_back(fmt::format(
-            "the Rank Test is limited on this base mesh: {}. Use mesh.source = \"lattice\" with a "
-            "mesh.spacing that divides each side on which the map repeats; the Summed Height, Curvature and "
+            "the Rank Test is limited on this base mesh: {}. {}; the Summed Height, Curvature and "
             "Mipmap Tests support any base mesh",
-            fmt::join(limits, "; ")));
+            fmt::join(limits, "; "),
+            scene.registers.formats.texture.fraction == 0
+                ? "Set formats.texture_fraction = 1, since texture coordinates miss the centres of texels"
+                : "Use mesh.source = \"lattice\" with a mesh.spacing that divides each side on which the map "
+                  "repeats"));
 }
 
 class RankHost : public HeightTestHost {

@@ -235,6 +235,7 @@ inline const std::map<std::string, std::vector<Remedy>>& remedies() {
              {"fold > a.obj; run mesh.file=a.obj map.source=constant", "have different normals there; give it smooth ones", "fold | sed '/^vn/d;s,/. , ,g;s,/.$,,' > a.obj; run mesh.file=a.obj map.source=constant"},
              {"seam > a.obj; run mesh.file=a.obj", "make it alike on both sides", "run mesh.file=a.obj map.source=constant"},
              {"seam > a.obj; run mesh.file=a.obj", "or unwrap the mesh without a seam there", "seam | sed 's,2/7,2/2,;s,3/8,3/3,' > a.obj; run mesh.file=a.obj"},
+             {"run hardware.height_test=rank mesh.source=lattice mesh.spacing=16 formats.texture_fraction=0", "Set formats.texture_fraction = 1", ""},
              {"run hardware.height_test=rank hardware.triangulation=greatest_rank", R"(Use mesh.source = "lattice" with a mesh.spacing)", "run hardware.height_test=rank hardware.triangulation=greatest_rank mesh.source=lattice mesh.spacing=16"},
          }},
         {"script",
