@@ -141,14 +141,16 @@ std::optional<BoundResult> check_bound(const Job& job, const BaseMesh& base, con
         result.verdict = Verdict::not_promised;
         return result;
     }
+    // Without rounding a threshold of zero is met but for that of double precision, far below that of positions.
+    const double met = allowed + 1e-6 * result.deviation;
     const HeightMap coded = coded_map(map, setup);
     const RecordedMesh unrounded = meter.unrounded(coded, mesh);
     const double ideal = meter.deviation(meter.error(map, unrounded));
-    if (ideal <= allowed) {
+    if (ideal <= met) {
         result.verdict = Verdict::positions;
         result.remedy = more_bits("formats.position_bits", job.formats.position_bits, Limits::position_bits.most,
                                   result.deviation - ideal, result.threshold - ideal, result.deviation);
-    } else if (const double of_codes = meter.deviation(meter.error(coded, unrounded)); of_codes <= allowed) {
+    } else if (const double of_codes = meter.deviation(meter.error(coded, unrounded)); of_codes <= met) {
         result.verdict = Verdict::heights;
         result.remedy =
             more_bits("formats.displacement_bits", job.formats.displacement_bits, Limits::displacement_bits.most,

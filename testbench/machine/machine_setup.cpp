@@ -59,10 +59,9 @@ void fit_heights_to_own_mesh(std::int64_t most_triangles, MachineSetup& setup) {
                                                    {setup.texel_size[0] / height, setup.texel_size[1] / height})
                                      : setup.map;
     setup.fitted_heights.clear();
-    if (!ends)
-        return;
-    setup.fitted_heights = fitted.codes;
-    if (setup.fitted_heights == setup.map.codes)
+    if (ends)
+        setup.fitted_heights = fitted.codes;
+    if (ends ? fitted.codes == setup.map.codes : height == 0)
         setup.remarks.emplace_back(
             "map.heights = \"fitted\" has no effect: no other heights reduce this mesh's error without raising its "
             "largest distance from the surface; the map's own are used");

@@ -21,7 +21,7 @@ BoundFacts facts_of(const SceneSettings& settings, const BaseMesh& mesh, const P
     facts.height_test = settings.height_test;
     facts.triangulation = settings.triangulation;
     facts.culling = settings.culling != Culling::none;
-    facts.fitted = !scene.fitted_heights.empty();
+    facts.fitted = scene.heights() != scene.map.codes;
     facts.lattice = mesh.beyond_map;
     facts.closed = tables.clashes == 0;
     facts.reaches_all = tables.clashes > 0 || tables.least_error == 0;
