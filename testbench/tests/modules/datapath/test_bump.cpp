@@ -8,7 +8,7 @@
 #include "testbench/common/random.h"
 
 using namespace tessera::datapath;
-using namespace tessera::testing;
+using tessera::Random;
 
 namespace {
 

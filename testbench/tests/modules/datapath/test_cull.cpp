@@ -8,6 +8,7 @@
 
 using namespace tessera::datapath;
 using namespace tessera::testing;
+using tessera::Random;
 
 namespace {
 

@@ -12,6 +12,7 @@
 
 using namespace tessera::datapath;
 using namespace tessera::testing;
+using tessera::Random;
 
 TEST_CASE("split decision: (NT or SHT or HT) and VT and TCT and GT, all 64 rows") {
     for (unsigned row = 0; row < 64; ++row) {

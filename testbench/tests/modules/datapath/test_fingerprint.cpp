@@ -11,6 +11,7 @@
 /// Integer arithmetic only, so every compiler must give the same bits at every optimisation level.
 using namespace tessera::datapath;
 using namespace tessera::testing;
+using tessera::Random;
 
 namespace {
 

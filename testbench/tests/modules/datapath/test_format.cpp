@@ -8,6 +8,7 @@
 
 using namespace tessera::datapath;
 using namespace tessera::testing;
+using tessera::Random;
 
 TEST_CASE("formats: lowest and highest values") {
     for (int bits = 1; bits <= 48; ++bits) {

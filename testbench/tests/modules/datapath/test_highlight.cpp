@@ -12,7 +12,7 @@
 
 /// The Highlight Test: one of three normals in the highlight, and a difference above its threshold.
 using namespace tessera::datapath;
-using namespace tessera::testing;
+using tessera::Random;
 
 namespace {
 

@@ -7,7 +7,7 @@
 #include "testbench/common/random.h"
 
 using namespace tessera::datapath;
-using namespace tessera::testing;
+using tessera::Random;
 
 TEST_CASE("light: agrees with doubles, 0..255, any operands, every legal normal format") {
     Random random(23);

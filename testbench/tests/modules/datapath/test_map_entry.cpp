@@ -5,7 +5,7 @@
 #include "testbench/common/random.h"
 
 using namespace tessera::datapath;
-using namespace tessera::testing;
+using tessera::Random;
 
 TEST_CASE("normal map entry: unpacking restores the packed normal, every width from 4 to 21") {
     Random random(19);

@@ -12,7 +12,7 @@
 
 /// Checks rounding, saturation and widths against SystemC's own fixed-point and wide integer types.
 using namespace tessera::datapath;
-using namespace tessera::testing;
+using tessera::Random;
 
 /// Catch2's main runs; the SystemC library still needs this symbol.
 int sc_main(int, char**) {

@@ -14,6 +14,7 @@ using namespace tessera::testing;
 namespace {
 
 using Row = std::array<std::int64_t, 4>;
+using tessera::Random;
 
 /// Limits of what the host sets: matrix entries of magnitude 1, an offset of 61 bits, an exponent of up to 24 (a field
 /// of view of 0.1 degrees, 16384 pixels high).

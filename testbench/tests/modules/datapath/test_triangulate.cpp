@@ -11,7 +11,7 @@
 #include "testbench/common/random.h"
 
 using namespace tessera::datapath;
-using namespace tessera::testing;
+using tessera::Random;
 
 namespace {
 
