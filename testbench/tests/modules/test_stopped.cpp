@@ -120,20 +120,20 @@ const CaseTable<Drained> drained(
 struct FramelessSource : sc_core::sc_module, CycleProcess {
     StreamOutput<datapath::Triangle> out{"out"};
 
-    FramelessSource(const sc_core::sc_module_name& name, Machine& hosted, const datapath::Triangle& triangle)
-        : sc_module(name), hosted_(hosted), triangle_(triangle) {
-        hosted.clock.attach(*this);
-        out.clocked_by(hosted.clock, *this);
-        out.bind(hosted.get_triangle.from_host);
+    FramelessSource(const sc_core::sc_module_name& name, Machine& machine, const datapath::Triangle& triangle)
+        : sc_module(name), machine_(machine), triangle_(triangle) {
+        machine.clock.attach(*this);
+        out.clocked_by(machine.clock, *this);
+        out.bind(machine.get_triangle.from_host);
         SC_HAS_PROCESS(FramelessSource);
-        if (hosted.transport() == Transport::blocking)
+        if (machine.transport() == Transport::blocking)
             SC_THREAD(send);
     }
 
   private:
     void start_of_simulation() override {
-        if (hosted_.transport() == Transport::non_blocking)
-            hosted_.clock.wake(*this);
+        if (machine_.transport() == Transport::non_blocking)
+            machine_.clock.wake(*this);
     }
     void step() override {
         if (!std::exchange(sent_, true))

@@ -136,7 +136,7 @@ inline void require_timed_conservation(const Simulation& simulation, const Hoste
 }
 
 inline void require_timed_identities(const Simulation& simulation, const HostedMachine& hosted) {
-    require_timed_conservation(simulation, machine);
+    require_timed_conservation(simulation, hosted);
     const Machine& p = hosted.machine;
     for (const Unit* unit : p.units()) {
         require_cycles_add_up(*unit, simulation.cycles());
