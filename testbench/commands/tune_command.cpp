@@ -20,6 +20,7 @@
 #include "testbench/job/job_paths.h"
 #include "testbench/job/read_job.h"
 #include "testbench/machine/bare_recursion.h"
+#include "testbench/machine/fingerprint.h"
 #include "testbench/machine/inputs.h"
 #include "testbench/machine/simulation.h"
 #include "testbench/setup/height_tests/height_test_host.h"
@@ -173,6 +174,7 @@ Searched choose_tests(const TuneOrder& order, TuneRequest& request) {
 TuneRequest request_of(const TuneOrder& order, const fs::path& data_folder, Searched& searched) {
     TuneRequest request;
     request.job = load_job(order.job_file, order.settings, data_folder);
+    record_fingerprints(request.job);  // the figures hold for these files
     request.threads = order.jobs;
     searched = choose_tests(order, request);
     request.goal.triangles = order.triangles;

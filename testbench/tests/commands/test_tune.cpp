@@ -90,6 +90,19 @@ TEST_CASE("a bound on the error holds for the error that compare measures, bit f
     }
 }
 
+TEST_CASE("a tuned job whose map has changed since is refused") {
+    const TestFolder here;
+    write_all(here.path() / "map.pgm", "P2 4 4 9\n0 9 5 1\n1 2 3 1\n8 2 3 1\n4 2 9 0\n");
+    succeed({"tune", "--triangles", "60", "--set", "map.file=map.pgm"}, here.path());
+    const Arguments run{"run", "tuned.toml", "--set", "mode=functional"};
+    succeed(run, here.path());
+    write_all(here.path() / "map.pgm", "P2 4 4 9\n0 9 5 1\n1 2 3 1\n8 2 3 1\n4 2 9 9\n");
+    const ProgramEnd end = run_tessera(run, here.path());
+    INFO(end.text());
+    CHECK(end.exit_code == 2);
+    CHECK_THAT(end.err, Contains("map.fingerprint = ") && Contains("was changed since"));
+}
+
 TEST_CASE("tune finds a Rank Test's threshold, and a Bound Test's bound holds") {
     const TestFolder here;
     const std::string job = (source_folder() / "testbench/examples/jobs/crater_lake_rank.toml").string();
