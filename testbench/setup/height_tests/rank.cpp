@@ -68,7 +68,7 @@ class RankHost : public HeightTestHost {
              between(0, 1e9),
              "With hardware.height_test = \"rank\" and formats.rank_bits: an edge requests a split if the square root of the squared error that its midpoint removes, per added triangle, is larger"},
             {"bound_threshold", 0.01, "full scale; pixels (per_point, per_pixel)", between(0, 1e6),
-             "With hardware.height_test = \"rank\" and formats.bound_bits: largest distance of a point of the map from the mesh, along the normal, or as it appears in the picture. A run says that it holds, or what to set (testbench/check/PROMISES.md)"}};
+             "With hardware.height_test = \"rank\" and formats.bound_bits: largest distance of a point of the map from the mesh, along the normal, or as it appears in the picture. A run whose table has bounds, or whose value is not the default, says that it holds, or what to set (testbench/check/PROMISES.md)"}};
         return keys;
     }
     void set_thresholds(const TestSettings& tests, const datapath::Formats& formats, const ViewedScale& view,
