@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
+#include <filesystem>
+#include <regex>
 #include <string>
 
 #include "testbench/setup/bound_promise.h"
@@ -74,6 +76,25 @@ TEST_CASE("bound: PROMISES.md ends with the table of conditions") {
     for (const BoundCondition& condition : bound_conditions)
         rows += "| " + as_text(condition) + " | " + condition.why + " |\n";
     expect_section("testbench/check/PROMISES.md", "| holds with | without |\n| --- | --- |\n", rows);
+}
+
+TEST_CASE("bound: PROMISES.md names tests that exist") {
+    std::string sources;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(source_folder() / "testbench/tests"))
+        if (const auto extension = entry.path().extension(); extension == ".cpp" || extension == ".h")
+            sources += read_all(entry.path());
+    const std::string programs = read_all(source_folder() / "testbench/tests/CMakeLists.txt");
+    const std::string document = read_all(source_folder() / "testbench/check/PROMISES.md");
+    const std::regex test("`(test_\\w+)`(?:: ([^;|]*[^;| ]))?");
+    int named = 0;
+    for (std::sregex_iterator found(document.begin(), document.end(), test), end; found != end; ++found) {
+        const std::string words = (*found)[2];
+        INFO((*found)[0]);
+        CHECK(programs.find("tessera_add_test(" + (*found)[1].str() + ' ') != std::string::npos);
+        CHECK(sources.find(words) != std::string::npos);
+        named += words.empty() ? 0 : 1;
+    }
+    CHECK(named >= 20);
 }
 
 TEST_CASE("bound: a job that asks for none is not measured") {
