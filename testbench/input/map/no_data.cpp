@@ -120,10 +120,10 @@ struct Between {
     bool has(float value) const { return value > floor && value < ceiling; }
 
     /// The lowest or highest different values, the outermost first; infinite ones, which no texel holds, at the end.
-    template <std::size_t number>
-    std::array<Level, number> outermost(bool lowest) const {
+    template <std::size_t Number>
+    std::array<Level, Number> outermost(bool lowest) const {
         const auto before = [lowest](float a, float b) { return lowest ? a < b : a > b; };
-        std::array<Level, number> levels{};
+        std::array<Level, Number> levels{};
         levels.fill({lowest ? infinity : -infinity});
         for (const float value : *values) {
             if (!has(value) || before(levels.back().value, value))
@@ -132,7 +132,7 @@ struct Between {
             while (before(levels[place].value, value))
                 ++place;
             if (value != levels[place].value) {
-                for (std::size_t k = number - 1; k > place; --k)
+                for (std::size_t k = Number - 1; k > place; --k)
                     levels[k] = levels[k - 1];
                 levels[place] = {value, 0};
             }
