@@ -462,11 +462,11 @@ TEST_CASE("libraries are accepted at both ends of the range in README, refused b
     const fs::path list = source_folder() / "cmake/tessera_libraries.cmake", readme = source_folder() / "README.md";
     write_all(folder.path() / "find.cmake",
               "cmake_minimum_required(VERSION 3.21)\ninclude(\"" + list.string() +
-                  "\")\nfile(WRITE ${name}Config.cmake \"set(${name}_VERSION ${version})\\n\")\n"
+                  "\")\nfile(WRITE ${name}Config.cmake \"set(${name}_VERSION ${release})\\n\")\n"
                   "tessera_find(${name} CONFIG PATHS . NO_DEFAULT_PATH ${required})\n"
                   "if(NOT ${name}_FOUND)\nmessage(\"left out: ${tessera_not_found}\")\nendif()\n");
-    const auto find = [&](const std::string& name, const std::string& version, const std::string& required) {
-        return run({"cmake", "-Dname=" + name, "-Dversion=" + version, "-Drequired=" + required, "-P", "find.cmake"},
+    const auto find = [&](const std::string& name, const std::string& release, const std::string& required) {
+        return run({"cmake", "-Dname=" + name, "-Drelease=" + release, "-Drequired=" + required, "-P", "find.cmake"},
                    folder.path());
     };
     const std::string text = read_all(list), table = read_all(readme);
@@ -479,8 +479,8 @@ TEST_CASE("libraries are accepted at both ends of the range in README, refused b
         const std::size_t last = least.rfind('.') + 1;
         before.replace(last, std::string::npos, std::to_string(std::stoi(least.substr(last)) - 1));
         INFO(name);
-        for (const std::string& version : {least, newest}) {
-            const ProgramEnd found = find(name, version, "REQUIRED");
+        for (const std::string& release : {least, newest}) {
+            const ProgramEnd found = find(name, release, "REQUIRED");
             INFO(found.text());
             CHECK(found.exit_code == 0);
             CHECK((found.out + found.err).empty());
