@@ -223,7 +223,8 @@ TEST_CASE("the cycles that README.md and modules/README.md state are those of th
         return rounded(*least, 2) + " to " + rounded(*most, 2);
     };
     const auto per_triangle = [&](const Arguments& keys) { return range(&Measured::per_triangle, keys); };
-    states("that design takes " + per_triangle(modern) + " cycles per finished triangle, with two Normal Tests");
+    states("`design = \"modern\"` takes " + per_triangle(modern) +
+           " cycles per finished triangle, with two Normal Tests");
     states("(the last row but one) " + per_triangle(two_tests) + ", with eight machines " +
            per_triangle(eight_machines) + ".");
     const auto one = [&](const std::string& job, const Arguments& keys) {

@@ -18,7 +18,7 @@ Job three_tests_units_job() {
                          "timing.clock_period=3200 hardware.tests_units=3 hardware.queue_capacity=16");
 }
 
-const JobResult& default_result = result_of("half_donut");
+const JobResult default_result = result_of("half_donut");
 
 /// Requires exactly one notification, in the last cycle of its own clock.
 void expect_drained_in_last_cycle(const NamedMachine& machine) {

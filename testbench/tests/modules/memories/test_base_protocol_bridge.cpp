@@ -28,7 +28,7 @@ namespace {
 const sc_time period(10, SC_PS);
 
 std::uint64_t own_address(std::uint64_t address) {
-    return (address & 255) | (address + 1 & 255) << 8 | (address + 2 & 255) << 16 | (address + 3 & 255) << 24;
+    return (address & 255) | ((address + 1) & 255) << 8 | ((address + 2) & 255) << 16 | ((address + 3) & 255) << 24;
 }
 
 /// A reader and a bridge in front of a memory of the base protocol.
