@@ -1,6 +1,10 @@
 #include "testbench/render/ray_scene.h"
 
-#include TESSERA_EMBREE_HEADER
+#if TESSERA_EMBREE >= 4
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
 #include <fmt/core.h>
 
 #include <algorithm>
