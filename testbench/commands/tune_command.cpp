@@ -223,8 +223,10 @@ void check_places(const TuneOrder& order, const Job& job, const std::vector<fs::
 /// The job to be written: its lattice is beside it, and it has a run folder of its own.
 Job finished_job(const TuneResult& result, const fs::path& job_file, const fs::path& obj_file) {
     Job job = result.job;
-    if (!result.base_obj.empty())
+    if (!result.base_obj.empty()) {
         job.mesh.file = rebase_path(obj_file.filename().string(), job_file.parent_path(), job.folder);
+        job.mesh.fingerprint = fingerprint_of_bytes(result.base_obj);
+    }
     job.output.folder = own_run_folder(job_file);
     return job;
 }

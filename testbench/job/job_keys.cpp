@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <initializer_list>
 #include <type_traits>
 #include <utility>
 
@@ -40,6 +41,14 @@ T from_value(const JobValue& value) {
 /// In the order of MapRange::Kind.
 constexpr std::array<std::string_view, 2> range_names{"full", "data"};
 
+template <typename Enum>
+std::vector<std::string_view> only(std::initializer_list<Enum> values) {
+    std::vector<std::string_view> names;
+    for (const Enum value : values)
+        names.push_back(name_of(value));
+    return names;
+}
+
 /// Fills one table; `Group` is the struct of Job whose members the keys set.
 template <typename Group, typename Select>
 class TableWriter {
@@ -49,20 +58,20 @@ class TableWriter {
     void add(const char* leaf, bool Group::*member, const char* description) const {
         add_plain(leaf, member, KeyKind::flag, "-", {}, description);
     }
-    void add(const char* leaf, std::int64_t Group::*member, const char* unit, KeyRange range,
+    Key& add(const char* leaf, std::int64_t Group::*member, const char* unit, KeyRange range,
              const char* description) const {
-        add_plain(leaf, member, KeyKind::integer, unit, range, description);
+        return add_plain(leaf, member, KeyKind::integer, unit, range, description);
     }
-    void add(const char* leaf, double Group::*member, const char* unit, KeyRange range,
+    Key& add(const char* leaf, double Group::*member, const char* unit, KeyRange range,
              const std::string& description) const {
-        add_plain(leaf, member, KeyKind::number, unit, range, description);
+        return add_plain(leaf, member, KeyKind::number, unit, range, description);
     }
     void add(const char* leaf, std::array<double, 3> Group::*member, const char* unit, KeyRange range,
              const char* description) const {
         add_plain(leaf, member, KeyKind::vector, unit, range, description);
     }
-    void add(const char* leaf, std::string Group::*member, KeyKind kind, const char* description) const {
-        add_plain(leaf, member, kind, "-", {}, description);
+    Key& add(const char* leaf, std::string Group::*member, KeyKind kind, const char* description) const {
+        return add_plain(leaf, member, kind, "-", {}, description);
     }
     void add(const char* leaf, std::vector<double> Group::*member, const char* unit, const char* description) const {
         add_plain(leaf, member, KeyKind::numbers, unit, {}, description);
@@ -139,14 +148,14 @@ class TableWriter {
 
   private:
     template <typename T>
-    void add_plain(const char* leaf, T Group::*member, KeyKind kind, const char* unit, KeyRange range,
+    Key& add_plain(const char* leaf, T Group::*member, KeyKind kind, const char* unit, KeyRange range,
                    const std::string& description) const {
-        add_value<T>(
+        return add_value<T>(
             leaf, [member](auto& group) -> auto& { return group.*member; }, kind, unit, range, description);
     }
 
     template <typename T, typename Member>
-    void add_value(const char* leaf, Member member, KeyKind kind, const char* unit, KeyRange range,
+    Key& add_value(const char* leaf, Member member, KeyKind kind, const char* unit, KeyRange range,
                    const std::string& description) const {
         Key& key = push(leaf, kind, unit, description);
         key.range = range;
@@ -156,6 +165,7 @@ class TableWriter {
         key.set = [select = select_, member](Job& job, const JobValue& value) {
             member(select(job)) = from_value<T>(value);
         };
+        return key;
     }
 
     Key& push(const std::string& leaf, KeyKind kind, const char* unit, const std::string& description) const {
@@ -215,25 +225,25 @@ std::vector<KeyTable> declare_keys() {
         key.add("source", &Mesh::source, "A built-in shape; file, run: the mesh in mesh.file (file is the default if mesh.file is given); lattice: a plane whose vertices lie at centres of texels, mesh.spacing apart, from the first texel's. On a clamped axis of n texels it ends at the last one's centre if mesh.spacing divides n - 1, on a repeated axis a period later if it divides n, else beyond that");
         key.add("file", &Mesh::file, KeyKind::file, "With mesh.source = \"file\" an OBJ file; with \"run\" the folder of an earlier run");
         key.add("fingerprint", &Mesh::fingerprint, KeyKind::text, "64-bit FNV-1a hash of the file (of a run's mesh.ply), 16 hexadecimal digits; a file with another hash is refused. A run writes it into its job.toml; empty: any file");
-        key.add("columns", &Mesh::columns, "quads", between(0, 2048), "Quads along u of a plane, cylinder or sphere; 0: 3 for the plane, 32 for cylinder and sphere, which need 3 or more");
-        key.add("rows", &Mesh::rows, "quads", between(0, 2048), "Quads along v, likewise; a sphere needs 2 or more");
-        key.add("spacing", &Mesh::spacing, "texels", between(1, 2048), "Distance between the vertices of a lattice: a power of two");
-        key.add("width", &Mesh::width, "model units", length_range, "Size of the plane along x; with a lattice, of the map");
-        key.add("depth", &Mesh::depth, "model units", length_range, "Size of the plane along y; with a lattice, of the map");
-        key.add("radius", &Mesh::radius, "model units", length_range, "Radius of the cylinder or sphere");
-        key.add("height", &Mesh::height, "model units", length_range, "Height of the cylinder");
+        key.add("columns", &Mesh::columns, "quads", between(0, 2048), "Quads along u of a plane, cylinder or sphere; 0: 3 for the plane, 32 for cylinder and sphere, which need 3 or more").sources = only({MeshSource::plane, MeshSource::cylinder, MeshSource::sphere});
+        key.add("rows", &Mesh::rows, "quads", between(0, 2048), "Quads along v, likewise; a sphere needs 2 or more").sources = only({MeshSource::plane, MeshSource::cylinder, MeshSource::sphere});
+        key.add("spacing", &Mesh::spacing, "texels", between(1, 2048), "Distance between the vertices of a lattice: a power of two").sources = only({MeshSource::lattice});
+        key.add("width", &Mesh::width, "model units", length_range, "Size of the plane along x; with a lattice, of the map").sources = only({MeshSource::plane, MeshSource::lattice});
+        key.add("depth", &Mesh::depth, "model units", length_range, "Size of the plane along y; with a lattice, of the map").sources = only({MeshSource::plane, MeshSource::lattice});
+        key.add("radius", &Mesh::radius, "model units", length_range, "Radius of the cylinder or sphere").sources = only({MeshSource::cylinder, MeshSource::sphere});
+        key.add("height", &Mesh::height, "model units", length_range, "Height of the cylinder").sources = only({MeshSource::cylinder});
     });
     list.table("map", &Job::map, "The displacement map.", [](const auto& key) {
         using Map = Job::Map;
         key.add("source", &Map::source, "A built-in map; file: the image in map.file (the default if map.file is given)");
         key.add("file", &Map::file, KeyKind::file, "EXR, PNG or PGM file, with map.source = \"file\"");
         key.add("fingerprint", &Map::fingerprint, KeyKind::text, "Hash of the file, as mesh.fingerprint");
-        key.add("channel", &Map::channel, KeyKind::text, "Channel of an EXR file; empty: Y, else R, else the only one");
-        key.add("width", &Map::width, "texels", between(1, 4096), "Width of a built-in map");
-        key.add("height", &Map::height, "texels", between(1, 4096), "Height of a built-in map");
-        key.add("value", &Map::value, "full scale", between(0, 1), "Value of the constant map");
-        key.add("seed", &Map::seed, "-", between(0, 4294967295.0), "Seed of the noise map");
-        key.add("text", &Map::text, KeyKind::text, "Text of the text map");
+        key.add("channel", &Map::channel, KeyKind::text, "Channel of an EXR file; empty: Y, else R, else the only one").sources = only({MapSource::file});
+        key.add("width", &Map::width, "texels", between(1, 4096), "Width of a built-in map").sources = only({MapSource::half_donut, MapSource::text, MapSource::noise, MapSource::constant, MapSource::ramp});
+        key.add("height", &Map::height, "texels", between(1, 4096), "Height of a built-in map").sources = only({MapSource::half_donut, MapSource::text, MapSource::noise, MapSource::constant, MapSource::ramp});
+        key.add("value", &Map::value, "full scale", between(0, 1), "Value of the constant map").sources = only({MapSource::constant});
+        key.add("seed", &Map::seed, "-", between(0, 4294967295.0), "Seed of the noise map").sources = only({MapSource::noise});
+        key.add("text", &Map::text, KeyKind::text, "Text of the text map").sources = only({MapSource::text});
         key.add("range", &Map::range, "the map's own units", coordinate_range, "The range of map values that displacement.scale spans: full, all values that the source can represent (PGM: 0 to its maximum value; PNG: 0 to 255 or 65535; EXR and built-in maps: 0 to 1); data, from the lowest to the highest value that occurs; or [low, high]. Values outside the range extrapolate linearly. With data or [low, high] the displacement codes, and the full scale of tests.summed_height_threshold, span the values that occur");
         key.add("no_data", &Map::no_data, "the map's own units", "Values that mark missing data, such as -9999: their texels, like those that are NaN, get the lowest of the other values, and are counted. A value matches if it is the nearest of the file's type; one beyond 1e30, positive or negative, also if it differs by at most 1 %");
         key.add("heights", &Map::heights, "Contents of the displacement map: the map's heights, or heights fitted to the mesh that the job's thresholds give. They reduce its squared error at the texel centres most, lie within those of the texels up to two away, and do not enlarge the largest distance between mesh and map. The tables of the tests remain those of the map; errors are measured against it");

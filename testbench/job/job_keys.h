@@ -39,6 +39,7 @@ struct Key {
     KeyRange range;
     std::vector<std::string_view> choices;
     std::string description;
+    std::vector<std::string_view> sources;  ///< choices of its table's `source` that use it; empty: all
     std::function<JobValue(const Job&)> get;
     std::function<void(Job&, const JobValue&)> set;  ///< for values without complaint(); see set_value
 

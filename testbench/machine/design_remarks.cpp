@@ -114,8 +114,29 @@ std::vector<Idle> idle_test_keys(const Job& job, const datapath::Formats& format
     return idle;
 }
 
+/// Of the mesh and the map: a key belongs to the sources that it declares.
+std::vector<Idle> idle_source_keys(const Job& job) {
+    std::vector<Idle> idle;
+    for (const char* const table : {"mesh", "map"}) {
+        const Key& source = *find_key(fmt::format("{}.source", table));
+        const JobValue chosen = source.get(job);
+        for (const Key& key : find_table(table)->keys) {
+            const auto& users = key.sources;
+            if (!users.empty() && std::find(users.begin(), users.end(), std::get<std::string>(chosen)) == users.end())
+                idle.push_back({{key.name}, fmt::format("{} = {}", source.name, toml_value(chosen))});
+        }
+    }
+    return idle;
+}
+
 std::vector<Idle> idle_keys(const Job& job, const MachineSetup& setup) {
     std::vector<Idle> idle = idle_test_keys(job, setup.registers.formats);
+    for (Idle& keys : idle_source_keys(job))
+        idle.push_back(std::move(keys));
+    if (!job.output.vcd)
+        idle.push_back({{"output.trace_"}, "output.vcd = false"});
+    if (job.frames.count == 1)
+        idle.push_back({{"frames.first_scale"}, "frames.count = 1"});
     if (job.mode != Mode::timed)
         return idle;
     const datapath::HeightTest height_test = setup.registers.formats.height_test;
@@ -160,7 +181,7 @@ std::vector<std::string> design_remarks(const Job& job, const MachineSetup& setu
     preset.hardware.design = job.hardware.design;
     apply_design(preset);
     const std::vector<Idle> idle = idle_keys(job, setup);
-    for (const char* const name : {"tests", "hardware", "timing"})
+    for (const char* const name : {"mesh", "map", "frames", "tests", "hardware", "timing", "output"})
         for (const Key& key : find_table(name)->keys) {
             const std::string value = toml_value(key.get(job)), setting = fmt::format("{} = {}", key.name, value);
             const auto why = std::find_if(idle.begin(), idle.end(), [&](const Idle& it) {

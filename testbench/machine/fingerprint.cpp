@@ -15,6 +15,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
+std::string written(std::uint64_t hash) {
+    return fmt::format("{:016x}", hash);
+}
+
 /// The mesh file that the job reads; for a run's folder, its mesh. Empty: the job reads none.
 fs::path mesh_file(const Job& job) {
     return job.mesh.source == MeshSource::run ? job.mesh.path / "mesh.ply" : job.mesh.path;
@@ -46,7 +50,11 @@ std::string fingerprint_of(const fs::path& file) {
         in.read(bytes.data(), bytes.size());
         hash = fnv1a({bytes.data(), static_cast<std::size_t>(in.gcount())}, hash);
     }
-    return in.bad() ? std::string{} : fmt::format("{:016x}", hash);
+    return in.bad() ? std::string{} : written(hash);
+}
+
+std::string fingerprint_of_bytes(std::string_view bytes) {
+    return written(fnv1a(bytes));
 }
 
 void record_fingerprints(Job& job) {

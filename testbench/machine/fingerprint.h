@@ -1,6 +1,7 @@
 #pragma once
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 #include "testbench/job/job.h"
 
@@ -8,6 +9,9 @@ namespace tessera {
 
 /// 64-bit FNV-1a hash of a file's bytes, 16 hexadecimal digits; empty if it cannot be read, which its reader reports.
 std::string fingerprint_of(const std::filesystem::path& file);
+
+/// The fingerprint of a file with these bytes.
+std::string fingerprint_of_bytes(std::string_view bytes);
 
 /// Fills in mesh.fingerprint and map.fingerprint of files that a job reads, if absent, so that its results are never
 /// compared with those of another file.

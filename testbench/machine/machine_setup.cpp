@@ -37,6 +37,20 @@ SceneSettings scene_settings(const Job& job) {
     return settings;
 }
 
+/// Records where finished triangles lie on the map, and nothing else of them: a job without an end reaches its limit.
+struct OnTheMap {
+    struct Note {};
+    std::vector<TextureTriangle> triangles;
+
+    static Note begin(const datapath::Triangle&) { return {}; }
+    static void decided(const datapath::TrianglePass&, const datapath::ChildIndices&, const Note&) {}
+    static Note child(const std::array<std::uint8_t, 3>&) { return {}; }
+    void finished(const datapath::Triangle& triangle, bool /*culled*/) {
+        const auto& v = triangle.vertices;
+        triangles.push_back({v[0].texture, v[1].texture, v[2].texture});
+    }
+};
+
 /// Fits heights to the mesh that they give. A mesh beyond the job's limit is skipped, since its run stops there, and so is
 /// a flat one.
 void fit_heights_to_own_mesh(std::int64_t most_triangles, MachineSetup& setup) {
@@ -45,15 +59,9 @@ void fit_heights_to_own_mesh(std::int64_t most_triangles, MachineSetup& setup) {
     bool ends = height > 0;
     const auto mesh_of = [&](const QuantisedMap& map) {
         setup.fitted_heights = map.codes;
-        EmittedMesh mesh;
-        ends = ends && BareRecursion(setup).run(mesh, most_edges) < most_edges;
-        std::vector<TextureTriangle> triangles;
-        triangles.reserve(mesh.triangles.size());
-        for (const EmittedTriangle& triangle : mesh.triangles) {
-            const auto& corners = triangle.corners;
-            triangles.push_back({corners[0].texture, corners[1].texture, corners[2].texture});
-        }
-        return triangles;
+        OnTheMap mesh;
+        ends = ends && BareRecursion(setup).walk(mesh, most_edges) < most_edges;
+        return std::move(mesh.triangles);
     };
     const QuantisedMap fitted = ends ? fit_heights(setup.map, mesh_of, setup.registers.formats,
                                                    {setup.texel_size[0] / height, setup.texel_size[1] / height})

@@ -155,6 +155,15 @@ TEST_CASE("timed run: a key without effect in the design is noted, and has none"
     without_effect({}, "timing.stalls_seed", "5");
     without_effect({}, "hardware.off_chip_triangles", "5");
     without_effect({}, "tests.rank_threshold", "0.2");
+    without_effect({}, "mesh.spacing", "32");
+    without_effect({}, "mesh.radius", "3.0");
+    without_effect({"mesh.source=sphere"}, "mesh.width", "3.0");
+    without_effect({"mesh.source=lattice"}, "mesh.columns", "5");
+    without_effect({}, "map.seed", "7");
+    without_effect({"map.source=noise"}, "map.text", "\"other\"");
+    without_effect({}, "map.channel", "\"R\"");
+    without_effect({}, "frames.first_scale", "0.1");
+    without_effect({}, "output.trace_from", "5");
     without_effect({}, "tests.highlight_angle", "60.0");
     without_effect({"tests.view=false"}, "tests.view_threshold", "9.0");
     without_effect({"mode=functional", "hardware.height_test=curvature"}, "tests.summed_height_unit", "\"area\"");

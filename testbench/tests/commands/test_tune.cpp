@@ -66,6 +66,10 @@ TEST_CASE("tune chooses a base mesh, writes a lattice beside the job and keeps a
     CHECK_THAT(read_all(here.path() / "found/lattice.toml"), Contains("file = \"lattice.obj\""));
     CHECK(read_json(here.path() / "found/lattice.json").at("base").at("spacing") == 16);
     check_by_run_and_compare(here.path(), "found/lattice");
+    write_all(here.path() / "found/lattice.obj", read_all(here.path() / "found/lattice.obj") + "# changed\n");
+    const ProgramEnd changed = run_tessera({"run", "found/lattice.toml"}, here.path());
+    CHECK(changed.exit_code == 2);
+    CHECK_THAT(changed.err, Contains("mesh.fingerprint = ") && Contains("was changed since"));
 
     succeed(Arguments{"tune", "--error", "0.02", "--grid", "auto", "--output", "bound.toml"} + small_map, here.path());
     const Json bound = read_json(here.path() / "bound.json");
