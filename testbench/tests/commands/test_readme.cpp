@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "testbench/tests/support/checkout.h"
+#include "testbench/tests/support/expect_section.h"
 #include "testbench/tests/support/program_runner.h"
 
 using namespace tessera;
@@ -258,10 +259,7 @@ TEST_CASE("the cycles that README.md and modules/README.md state are those of th
 }
 
 TEST_CASE("every test that modules/README.md names exists") {
-    std::string sources;
-    for (const auto& entry : fs::recursive_directory_iterator(source_folder() / "testbench/tests"))
-        if (entry.path().extension() == ".cpp")
-            sources += read_all(entry.path());
+    const std::string sources = testing::all_test_sources();
     const std::string page = read_all(source_folder() / "modules/README.md");
     const std::regex row(R"(\n\|[^\n]*\| `(\w+ [^`\n]+)` \|(?=\n))");
     unsigned tests = 0;

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
-#include <filesystem>
 #include <regex>
 #include <string>
 
@@ -79,10 +78,7 @@ TEST_CASE("bound: PROMISES.md ends with the table of conditions") {
 }
 
 TEST_CASE("bound: PROMISES.md names tests that exist") {
-    std::string sources;
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(source_folder() / "testbench/tests"))
-        if (const auto extension = entry.path().extension(); extension == ".cpp" || extension == ".h")
-            sources += read_all(entry.path());
+    const std::string sources = all_test_sources();
     const std::string programs = read_all(source_folder() / "testbench/tests/CMakeLists.txt");
     const std::string document = read_all(source_folder() / "testbench/check/PROMISES.md");
     const std::regex test("`(test_\\w+)`(?:: ([^;|]*[^;| ]))?");

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdlib>
+#include <filesystem>
 #include <string>
 
 #include "testbench/tests/support/source_folder.h"
@@ -29,6 +30,15 @@ inline void expect_section(const std::string& name, const std::string& heading, 
     }
     INFO(path << " says something else; TESSERA_WRITE=1 has the test write it");
     CHECK((document.substr(from, to - from) == text));  // extra parentheses: nothing is printed
+}
+
+/// The text of all tests, in which a document's names of tests are looked for.
+inline std::string all_test_sources() {
+    std::string text;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(source_folder() / "testbench/tests"))
+        if (const auto extension = entry.path().extension(); extension == ".cpp" || extension == ".h")
+            text += read_all(entry.path());
+    return text;
 }
 
 }  // namespace tessera::testing

@@ -12,6 +12,7 @@
 #include "testbench/machine/simulation.h"
 #include "testbench/tests/check/conformance/setup_run.h"
 #include "testbench/tests/support/case_table.h"
+#include "testbench/tests/support/expect_section.h"
 #include "testbench/tests/support/job_settings.h"
 #include "testbench/tests/support/source_folder.h"
 #include "testbench/tests/support/test_folder.h"
@@ -151,10 +152,7 @@ TEST_CASE("golden takes from the host only what its specification lists, each wi
     const std::string table = between(text("golden/ALGORITHM.md"), "| taken |", "\n\n");
     CHECK(all(table, R"(\n\| `(\w+)`)") == taken);
 
-    std::string tests;
-    for (const auto& file : std::filesystem::recursive_directory_iterator(source_folder() / "testbench/tests"))
-        if (file.path().extension() == ".cpp")
-            tests += read_all(file.path());
+    const std::string tests = testing::all_test_sources();
     const auto named = all(table, R"(\| ([^|\n]*[^-|\n ]) \|(?=\n|$))");
     CHECK(named.size() == 11);
     for (const std::string& name : named)
