@@ -34,6 +34,7 @@ struct Bisection {
     double largest = 0, reach = 0;
     double fall = 0, size = 0;  // of the squared error; of the terms it is a difference of
     double pieces = 0;
+    std::array<double, 4> edge{};                          // the same for edges whole periods apart
     std::vector<std::pair<std::uint32_t, double>> makers;  // with the distance of their edges
 };
 
@@ -61,6 +62,9 @@ class Derivation {
     DerivedRanks run() {
         bisect_all();
         DerivedRanks result;
+        result.shared = shared_;
+        if (shared_)
+            return result;
         for (std::size_t k = 0; k < bisections_.size() && fault_.empty(); ++k)
             if (bisections_[k].pieces == 0)
                 fault_ = "bisection " + std::to_string(k) + " has no edge";
@@ -100,6 +104,14 @@ class Derivation {
             names[k] = {from.x, from.y, b.x, b.y, c.x, c.y};
         }
         return *std::min_element(names.begin(), names.end());
+    }
+
+    std::array<double, 4> name_of(const End& i, const End& j) const {
+        const auto from = [&](const glm::dvec2& a, const glm::dvec2& b) {
+            const glm::dvec2 start = in_first_period(a);
+            return std::array{start.x, start.y, b.x - a.x, b.y - a.y};
+        };
+        return std::min(from(i.at, j.at), from(j.at, i.at));
     }
 
     void bisect_all() {
@@ -147,9 +159,13 @@ class Derivation {
                 check_rest(piece, before);
                 continue;
             }
+            const std::array<double, 4> edge = name_of(piece.corners[k], piece.corners[(k + 1) % 3]);
+            std::array<double, 4>& its = bisections_[number].edge;
+            shared_ = shared_ || (its != edge && its != std::array<double, 4>{});
+            its = edge;
             if (piece.maker != nothing && number <= piece.maker) {
                 fault_ = "bisection " + std::to_string(number) + " needs a later one";
-                return;
+                continue;
             }
             const std::size_t k1 = (k + 1) % 3;
             Piece one = piece, other = piece;
@@ -373,6 +389,7 @@ class Derivation {
     const RankSource& source_;
     std::vector<std::uint32_t> number_at_;
     std::vector<Bisection> bisections_;
+    bool shared_ = false;
     std::string fault_;
 };
 

@@ -38,7 +38,8 @@ struct RankSource {
 struct DerivedRanks {
     std::vector<EntryRange> ranks, bounds, radii;
     EntryRange highest_bound_threshold;
-    std::string fault;  ///< of the midpoints, in words; empty: none
+    bool shared = false;  ///< two edges have one midpoint, a whole period apart: nothing is derived
+    std::string fault;    ///< of the midpoints, in words; empty: none
 };
 
 /// Derives a Rank Table by bisecting the base triangles at the given midpoints.

@@ -23,7 +23,7 @@ BoundFacts facts_of(const SceneSettings& settings, const BaseMesh& mesh, const P
     facts.culling = settings.culling != Culling::none;
     facts.fitted = scene.heights() != scene.map.codes;
     facts.lattice = mesh.beyond_map;
-    facts.closed = tables.clashes == 0;
+    facts.closed = tables.clashes == 0 && !tables.beyond_period;
     facts.reaches_all = tables.clashes > 0 || tables.least_error == 0;
     facts.in_picture = settings.tests.rank_view != RankView::none;
     facts.bound_bits = static_cast<int>(settings.formats.bound_bits);

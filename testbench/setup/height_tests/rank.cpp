@@ -45,6 +45,10 @@ void remark_on_base(const std::vector<TextureTriangle>& base, PreparedScene& sce
             fmt::format("{} midpoints share a texel of the Rank Table with another and use the greater rank: more "
                         "triangles than are needed, and no bound on the error",
                         tables.clashes));
+    else if (tables.beyond_period)
+        limits.emplace_back(
+            "it is longer than the map, and edges a period apart share an entry: more triangles than are "
+            "needed, and no bound on the error");
     if (!limits.empty())
         scene.remarks.push_back(fmt::format(
             "the Rank Test is limited on this base mesh: {}. {}; the Summed Height, Curvature and "

@@ -232,6 +232,21 @@ std::uint64_t count_clashes(const SplitHierarchy& hierarchy) {
     return static_cast<std::uint64_t>(texels.end() - distinct);
 }
 
+bool longer_than_period(const datapath::MapGeometry& map, const std::vector<TextureTriangle>& base,
+                        const datapath::Formats& formats) {
+    TexCoord low{UINT32_MAX, UINT32_MAX}, high{0, 0};
+    for (const TextureTriangle& triangle : base)
+        for (const TexCoord& t : triangle) {
+            low = {std::min(low.u, t.u), std::min(low.v, t.v)};
+            high = {std::max(high.u, t.u), std::max(high.v, t.v)};
+        }
+    const auto longer = [&](std::uint32_t from, std::uint32_t to, std::uint32_t size, datapath::AddressMode mode) {
+        return mode == datapath::AddressMode::repeat && to > from &&
+               std::uint64_t{to - from} > std::uint64_t{size} << formats.texture.fraction;
+    };
+    return longer(low.u, high.u, map.width, map.address_u) || longer(low.v, high.v, map.height, map.address_v);
+}
+
 }  // namespace
 
 RankTables make_rank_tables(const QuantisedMap& map, const std::vector<TextureTriangle>& base,
@@ -244,6 +259,7 @@ RankTables make_rank_tables(const QuantisedMap& map, const std::vector<TextureTr
     const SplitHierarchy hierarchy = make_split_hierarchy(map, base, formats, radii ? radii->steps : SurfaceSteps{});
     tables.least_error = hierarchy.least_error;
     tables.clashes = count_clashes(hierarchy);
+    tables.beyond_period = longer_than_period(map.geometry, base, formats);
     tables.midpoints.reserve(hierarchy.splits.size());
     for (const EdgeSplit& split : hierarchy.splits)
         tables.midpoints.push_back(split.midpoint);

@@ -40,6 +40,9 @@ struct RankTables {
     std::uint32_t highest_bound_threshold = 0;
     /// Midpoints that share their texel with another, whose entry is the greater one: none on a lattice.
     std::uint64_t clashes = 0;
+    /// The base mesh is longer than a period of the map on a repeated axis: an edge that the author leaves whole may have the
+    /// midpoint of another, a period away, and splits with it.
+    bool beyond_period = false;
     /// The midpoints in the order of their bisection, on a repeated axis within the map: the author's choice, from which
     /// all entries follow.
     std::vector<datapath::TexCoord> midpoints;

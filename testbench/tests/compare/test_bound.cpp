@@ -8,6 +8,7 @@
 #include "testbench/setup/bound_promise.h"
 #include "testbench/tests/compare/bound_run.h"
 #include "testbench/tests/support/expect_section.h"
+#include "testbench/tests/support/text.h"
 
 using namespace tessera;
 using namespace tessera::testing;
@@ -143,6 +144,18 @@ TEST_CASE("bound: each condition, broken, is named with its remedy, and the reme
         CHECK(mended.result->verdict == BoundResult::Verdict::holds);
     }
     CHECK(known == breaks.size());
+}
+
+TEST_CASE("bound: an edge without an error, a period from one that is bisected, lets it lapse") {
+    const BoundRun run(
+        on_the_surface +
+        "map.source=text map.text=. map.width=20 map.height=22 map.address_u=repeat map.address_v=repeat "
+        "mesh.spacing=8 ");
+    INFO(run.words());
+    CHECK(run.setup.rank_tables.clashes == 0);
+    CHECK_THAT(run.remark(), Contains("midpoints share entries of the Rank Table"));
+    CHECK_THAT(testing::joined(run.setup.remarks),
+               Contains("it is longer than the map, and edges a period apart share"));
 }
 
 TEST_CASE("bound: the rounding of positions is named with a width that suffices") {

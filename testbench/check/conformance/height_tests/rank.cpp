@@ -94,6 +94,8 @@ golden::DerivedRanks derived_ranks(const MachineSetup& setup, const GoldenJob& g
                                   last_place;
     }
     golden::DerivedRanks ranks = golden::derive_ranks(golden.map(), source);
+    if (ranks.shared)
+        return {};
     judge.require(ranks.fault.empty(), [&] { return ranks.fault; });
     if (source.bound_bits > 0 && ranks.fault.empty())
         judge.judge("highest_bound_threshold", table.highest_bound_threshold, ranks.highest_bound_threshold.low,

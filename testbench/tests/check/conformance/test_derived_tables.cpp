@@ -101,6 +101,9 @@ struct DerivedTable {
 const testing::CaseTable derived_tables(
     "golden derives the table of a ",
     {DerivedTable{"lattice that repeats", "map.width=64 map.height=48 map.address_u=repeat map.address_v=repeat"},
+     {"lattice longer than the map, which repeats", "map.width=60 map.address_u=repeat mesh.spacing=32"},
+     {"lattice where an edge without an error is a period from a bisected one",
+      "map.source=text map.text=. map.width=20 map.height=22 map.address_u=repeat map.address_v=repeat mesh.spacing=8"},
      {"lattice with entries of 6 bits", "formats.rank_bits=6 formats.bound_bits=6 mesh.spacing=64"},
      {"lattice with bounds alone, of 16 bits", "formats.rank_bits=0 formats.bound_bits=16"},
      {"plane off the lattice", "mesh.source=plane mesh.columns=2 mesh.rows=2 map.width=20 map.height=12"},
