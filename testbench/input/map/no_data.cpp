@@ -254,6 +254,71 @@ bool marks_missing_data(double value, const HeightMap& map) {
            std::find(markers.begin(), markers.end(), value) != markers.end();
 }
 
+/// Texels that hold one value, compared with the texels beside them.
+struct Patch {
+    std::int64_t count = 0, beside = 0;
+    double differences = 0;  ///< from those beside them
+
+    double mean_difference() const { return beside > 0 ? differences / static_cast<double>(beside) : 0; }
+};
+
+Patch patch_of(const HeightMap& map, float value) {
+    Patch patch;
+    const auto look = [&](int x, int y) {
+        if (x < 0 || y < 0 || x >= map.width || y >= map.height || map.at(x, y) == value)
+            return;
+        ++patch.beside;
+        patch.differences += std::abs(static_cast<double>(map.at(x, y)) - static_cast<double>(value));
+    };
+    for (int y = 0; y < map.height; ++y)
+        for (int x = 0; x < map.width; ++x) {
+            if (map.at(x, y) != value)
+                continue;
+            ++patch.count;
+            look(x - 1, y);
+            look(x + 1, y);
+            look(x, y - 1);
+            look(x, y + 1);
+        }
+    return patch;
+}
+
+/// The remark on values among the heights, or little apart from them, whose texels stand out from those beside them: one
+/// that often marks missing data, or the lowest or the highest.
+std::string remark_on_patches(const HeightMap& map, const Between& rest, std::vector<std::string>& values) {
+    constexpr std::array markers{999.0,   9999.0,  32767.0, 32768.0,
+                                 65535.0, 99999.0, 55537.0};  // the last: -9999 in 16 bits
+    constexpr std::int64_t few = 4, several = 64;
+    constexpr double far = 0.1, far_of_several = 0.02, far_outermost = 0.25,
+                     gap_outermost = 0.05;  // of all heights' span
+    constexpr std::size_t many = 256;
+    if (rest.some(many).size() < many)
+        return {};
+    const auto lows = rest.outermost<2>(true), highs = rest.outermost<2>(false);
+    const double span = static_cast<double>(highs[0].value) - static_cast<double>(lows[0].value);
+    std::vector<std::string> texts;
+    const auto look = [&](float value, bool outermost) {
+        const Patch patch = patch_of(map, value);
+        const double difference = patch.mean_difference() / span;
+        if (outermost ? patch.count < several || difference < far_outermost
+                      : patch.count < few || difference < (patch.count < several ? far : far_of_several))
+            return;
+        values.push_back(in_source(value, map));
+        texts.push_back(
+            fmt::format("{} texels hold exactly {}, and those beside them differ from it by {:.6g} on average",
+                        patch.count, values.back(), patch.mean_difference() * map.source_units));
+    };
+    for (const auto& [outermost, next] : {lows, highs})
+        if (std::abs(static_cast<double>(next.value) - static_cast<double>(outermost.value)) >= gap_outermost * span)
+            look(outermost.value, true);
+    for (const double marker : markers)
+        for (const double value : {marker, -marker})
+            if (const float inside = in_precision(value / map.source_units, map.significant_bits);
+                inside > lows[0].value && inside < highs[0].value)
+                look(inside, false);
+    return fmt::format("{}", fmt::join(texts, "; "));
+}
+
 /// Missing data that resampling has mixed with heights: near these texels, and only there, lie values between theirs and
 /// all others.
 struct Blurred {
@@ -361,6 +426,9 @@ void suspect_no_data(HeightMap& map, const std::vector<double>& given) {
             found = true;
         }
     }
+    if (!normalised)
+        if (std::string patches = remark_on_patches(map, rest, values); !patches.empty())
+            texts.push_back(std::move(patches));
     if (!texts.empty())
         map.no_data_hint = fmt::format("{}: if that marks missing data, set map.no_data = {}", fmt::join(texts, "; "),
                                        values.size() == 1 ? values[0] : fmt::format("[{}]", fmt::join(values, ", ")));

@@ -185,6 +185,39 @@ TEST_CASE("a map that seems to have missing data says which value, how many texe
     CHECK(advised(hint(two)) == "-3.4e+38");
 }
 
+TEST_CASE("a value within the heights that often marks missing data is told if its texels stand out") {
+    constexpr int size = 32, from = 3 * size * size / 4;
+    HeightMap slope;
+    slope.width = slope.height = size;
+    for (int k = 0; k < size * size; ++k)
+        slope.values.push_back(-10900 + 19000.0F * static_cast<float>(k) / (size * size));
+    const auto hint_with = [&](float hole, int holes) {
+        HeightMap map = slope;
+        std::fill_n(map.values.begin() + from, holes, hole);
+        return hint(map);
+    };
+    for (const float hole : {-9999.0F, 999.0F, -999.0F}) {
+        const std::string text = hint_with(hole, 5);
+        INFO(hole << ' ' << text);
+        CHECK_THAT(text, StartsWith("5 texels hold exactly " + std::to_string(static_cast<int>(hole)) +
+                                    ", and those beside them differ from it by "));
+        CHECK(advised(text) == std::to_string(static_cast<int>(hole)));
+        CHECK(hint_with(hole, 3) == "");
+    }
+    CHECK(hint_with(-9998, 5) == "");
+    INFO("a plain at that height");
+    HeightMap plain = slope;
+    for (float& value : plain.values)
+        if (std::abs(value + 9999) < 300)
+            value = -9999;
+    CHECK(hint(plain) == "");
+    INFO("the lowest value, a little apart");
+    std::fill_n(plain.values.begin() + from, 100, -12500.0F);
+    CHECK(advised(hint(plain)) == "-12500");
+    std::fill_n(plain.values.begin() + from, 100, -11000.0F);
+    CHECK(hint(plain) == "");
+}
+
 TEST_CASE("beside many values, which lie close together, a narrower gap is enough") {
     const auto slope = [](double low, double high, double hole, int holes, double units) {
         HeightMap map;
