@@ -117,6 +117,7 @@ std::pair<const Unit*, std::uint64_t> longest_wait(const Machine& machine, const
 constexpr std::uint64_t most_ports = 64;      // timing.*_ports
 constexpr std::size_t most_normal_tests = 9;  // hardware.normal_tests
 constexpr double worth_raising = 1.05;        // times faster without the limit
+constexpr double least_wait = 1;              // percent of the cycles
 
 std::string off_chip_key(const Machine& machine) {
     const OffChipMemory& memory = machine.off_chip_memory;
@@ -155,8 +156,16 @@ std::string relieving_key(const Machine& machine, const Unit& unit) {
     return "";
 }
 
-/// The one key that relieves all units of the limit, if they hold up the others noticeably.
-std::string relieving_key(const Machine& machine, const Bottleneck& found) {
+/// The one key that relieves all units of the limit, if they hold up the others noticeably, and nothing else holds up the
+/// unit that waits for them.
+std::string relieving_key(const Machine& machine, std::uint64_t cycles, const Bottleneck& found) {
+    const auto [waiting, most] = longest_wait(machine, found.first.units[0]);
+    const double waits = 100 * ratio(most, cycles);
+    if (waiting != nullptr && waits < least_wait)
+        return "";
+    if (waiting != nullptr && is_memory(*found.first.units[0]) &&
+        2 * state_percent(*waiting, State::blocked, cycles) > waits)
+        return "";
     std::string key;
     for (const Unit* unit : found.first.units) {
         const std::string its = relieving_key(machine, *unit);
@@ -183,7 +192,7 @@ std::string binding_text(const Machine& machine, std::uint64_t cycles, const Bot
         text += fmt::format("; without {} at most {:.1f} times faster, bounded by {}, {} {:.1f} %",
                             several ? "them" : "it", found.bound(), found.next.names(),
                             found.next.units.size() > 1 ? "which tie at" : "at", 100 * found.next.utilisation);
-    if (const std::string key = relieving_key(machine, found); !key.empty())
+    if (const std::string key = relieving_key(machine, cycles, found); !key.empty())
         text += "; a larger " + key + " helps";
     return text;
 }
