@@ -137,14 +137,21 @@ std::vector<Idle> idle_keys(const Job& job, const MachineSetup& setup) {
         idle.push_back({{"output.trace_"}, "output.vcd = false"});
     if (job.frames.count == 1)
         idle.push_back({{"frames.first_scale"}, "frames.count = 1"});
-    if (job.mode != Mode::timed)
-        return idle;
-    const datapath::HeightTest height_test = setup.registers.formats.height_test;
-    const Design& design = setup.design;
     const auto unless = [&](bool used, std::vector<std::string> keys, std::string because) {
         if (!used)
             idle.push_back({std::move(keys), std::move(because)});
     };
+    unless(setup.registers.formats.height_test == datapath::HeightTest::rank,
+           {"formats.rank_bits", "formats.bound_bits"}, "hardware.height_test is not \"rank\"");
+    if (job.mode != Mode::timed) {
+        idle.push_back({{"timing."}, "mode = \"functional\""});
+        for (const Key& key : find_table("hardware")->keys)
+            if (key.description.rfind("Timed mode", 0) == 0)
+                idle.push_back({{key.name}, "mode = \"functional\""});
+        return idle;
+    }
+    const datapath::HeightTest height_test = setup.registers.formats.height_test;
+    const Design& design = setup.design;
     unless(functions_of(height_test).rectangles, {"timing.summed_height_table_"},
            fmt::format("hardware.height_test = \"{}\"", name_of(height_test)));
     unless(!functions_of(height_test).rectangles, {"timing.height_table_"},
@@ -153,6 +160,7 @@ std::vector<Idle> idle_keys(const Job& job, const MachineSetup& setup) {
     for (const SizedTable& table : sized_tables(setup)) {
         const bool cached = table.timing.cache.bytes > 0;
         off_chip |= cached;
+        unless(table.timing.banks > 1, {"timing." + table.name + "_interleave"}, "timing." + table.name + "_banks = 1");
         unless(cached,
                {"timing." + table.name + "_line_bytes", "timing." + table.name + "_cache_ways",
                 "timing." + table.name + "_cache_fills"},
@@ -181,7 +189,7 @@ std::vector<std::string> design_remarks(const Job& job, const MachineSetup& setu
     preset.hardware.design = job.hardware.design;
     apply_design(preset);
     const std::vector<Idle> idle = idle_keys(job, setup);
-    for (const char* const name : {"mesh", "map", "frames", "tests", "hardware", "timing", "output"})
+    for (const char* const name : {"mesh", "map", "frames", "tests", "formats", "hardware", "timing", "output"})
         for (const Key& key : find_table(name)->keys) {
             const std::string value = toml_value(key.get(job)), setting = fmt::format("{} = {}", key.name, value);
             const auto why = std::find_if(idle.begin(), idle.end(), [&](const Idle& it) {
@@ -193,6 +201,9 @@ std::vector<std::string> design_remarks(const Job& job, const MachineSetup& setu
             if (why != idle.end() && value != toml_value(key.get(preset)) && !said)
                 remarks.push_back(fmt::format("{} has no effect: {}", setting, why->because));
         }
+    if (const std::size_t base = setup.base_triangles.size(); setup.machines > base)
+        remarks.push_back(fmt::format("hardware.machines = {}: only {} work, since the base mesh has {} triangles",
+                                      setup.machines, base, base));
     return remarks;
 }
 

@@ -21,9 +21,10 @@ bool clamps(const BaseMesh& mesh, datapath::AddressMode mode) {
 }
 
 std::uint32_t to_texture(double coordinate, std::uint32_t size, bool clamp, const Format& format, bool& clamped) {
+    constexpr double rounding = 1.0 / 16;  // texels; of the program that wrote the file
     double texels = coordinate * size;
-    if (clamp && (texels < 0 || texels > size)) {
-        clamped = true;
+    if (clamp) {
+        clamped = texels < -rounding || texels > size + rounding;
         texels = std::clamp(texels, 0.0, static_cast<double>(size));
     }
     const double fixed = std::nearbyint(std::ldexp(texels, format.fraction));
@@ -153,7 +154,7 @@ void round_base_triangles(const BaseMesh& original, const ModelScale& model_scal
     if (scene.texture_clamped > 0)
         scene.remarks.push_back(fmt::format(
             "{} base vertices have texture coordinates outside 0..1, and were set to the map's border, where "
-            "heights are its own and normals are not right; if they tile, {}",
+            "heights are its own and normals are not right; if they tile, {}, else move them into 0..1",
             scene.texture_clamped, tiling_remedy(original, map, formats.texture, clamped_u, clamped_v)));
 }
 

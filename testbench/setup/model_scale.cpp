@@ -35,14 +35,15 @@ std::string cause_of(const DisplacementSettings& settings, const HeightMap& map,
     if (beyond > 8 * span && high > low)
         return fmt::format("{}: set map.range = \"data\"", values);
     const double halvings = std::isfinite(factor) ? std::ceil(std::log2(factor)) : 0;
+    const bool far = std::abs(settings.bias) > std::abs(settings.scale);  // the surface is, rather than rough
     const int bits = position.bits + static_cast<int>(std::min(halvings, 64.0));
-    return fmt::format(
-        "{}: check the map's values{}{}", values,
-        halvings > 0 ? fmt::format(", divide displacement.scale and displacement.bias by {}", std::exp2(halvings + 1))
-                     : "",
-        halvings == 0 || bits > datapath::FormatLimits::position_bits.most
-            ? ""
-            : fmt::format(", or set formats.position_bits = {}", bits));
+    return fmt::format("{}: check the map's values{}{}", values,
+                       halvings > 0 ? fmt::format(", divide {} by {}", far ? "displacement.bias" : "displacement.scale",
+                                                  std::exp2(halvings + 9))
+                                    : "",
+                       halvings == 0 || bits > datapath::FormatLimits::position_bits.most
+                           ? ""
+                           : fmt::format(", or set formats.position_bits = {}", bits));
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include "testbench/setup/height_tests/height_test_host.h"
 #include "testbench/setup/light.h"
 #include "testbench/setup/map_displacement.h"
+#include "testbench/setup/mesh/triangle_geometry.h"
 #include "testbench/setup/model_scale.h"
 #include "testbench/setup/table_layout.h"
 #include "testbench/setup/tables/table_extent.h"
@@ -78,6 +79,31 @@ std::string relief_remark(const HeightMap& map, const DisplacementSettings& sett
             : "raise displacement.scale, or bring displacement.bias nearer to 0");
 }
 
+/// A sentence if more than 1 % of the base triangles are thinner than a few steps of the positions' format; else empty.
+std::string thin_base_remark(const BaseMesh& mesh, double scale, const datapath::Format& position) {
+    constexpr double fewest_steps = 16, few = 0.01;
+    std::size_t thin = 0;
+    double thinnest = fewest_steps;
+    for (const auto& t : mesh.triangles) {
+        const glm::dvec3 &a = mesh.vertices[t[0]].position, &b = mesh.vertices[t[1]].position,
+                         &c = mesh.vertices[t[2]].position;
+        const double longest = std::max({safe_length(b - a), safe_length(c - b), safe_length(a - c)});
+        const double steps = std::ldexp(2 * triangle_area(a, b, c) / longest * scale, position.fraction);
+        thin += steps < fewest_steps ? 1 : 0;
+        thinnest = std::min(thinnest, steps);
+    }
+    if (static_cast<double>(thin) <= few * static_cast<double>(mesh.triangles.size()))
+        return {};
+    const double bits = position.bits + std::ceil(std::log2(fewest_steps / thinnest));
+    return fmt::format(
+        "{} of {} base triangles are thinner than {} steps of the positions' format, the thinnest {:.2g}, so that rounding "
+        "changes their shape: {}",
+        thin, mesh.triangles.size(), fewest_steps, thinnest,
+        bits <= datapath::FormatLimits::position_bits.most
+            ? fmt::format("set formats.position_bits = {}", bits)
+            : "use thicker triangles, or a mesh whose parts are nearer to one another");
+}
+
 /// A sentence if no base vertex, at any height, is beyond the near plane; else empty.
 std::string unseen_remark(const CameraSettings& camera, bool view_test, const BaseMesh& mesh,
                           const DisplacementRange& displacement) {
@@ -124,8 +150,11 @@ PreparedScene prepare_model(const SceneSettings& settings, const BaseMesh& mesh,
     if (std::string remark = relief_remark(map, settings.displacement, scene.scale, formats.position); !remark.empty())
         scene.remarks.push_back(std::move(remark));
     scene.texel_spread = measure_texel_spread(mesh, scene);
-    if (std::string remark = texel_spread_remark(scene.texel_spread); !remark.empty())
-        scene.remarks.push_back(std::move(remark));
+    for (std::string& remark :
+         std::vector{thin_base_remark(mesh, scene.scale, formats.position), texel_spread_remark(scene.texel_spread),
+                     curved_base_remark(scene.texel_spread)})
+        if (!remark.empty())
+            scene.remarks.push_back(std::move(remark));
 
     round_base_triangles(mesh, model_scale, scene);
     scene.largest_rectangle_sum =

@@ -33,6 +33,9 @@ struct TexelSpread {
     double median_error = 0, largest_error = 0;                       ///< of N', degrees
     double wrong_percent = 0;      ///< of the surface, where N' is off by more than `noticeable`
     double wrong_map_percent = 0;  ///< of the map's area on it
+
+    /// The part of the error that is due to displacements along diverging or converging normals, likewise.
+    double curved_median = 0, curved_largest = 0, curved_percent = 0;
 };
 
 /// The host's data: everything rounded to the hardware's formats.

@@ -50,33 +50,49 @@ struct TexelAxes {
     double u, across, up;
 };
 
-TexelAxes texel_axes(const TextureGradient& gradient, const PreparedScene& scene) {
+/// dp_du and dp_dv: world units per unit of u, of v.
+TexelAxes texel_axes(const glm::dvec3& dp_du, const glm::dvec3& dp_dv, const PreparedScene& scene) {
     const datapath::MapGeometry& map = scene.registers.map;
-    const glm::dvec3 u = unit_or_zero(gradient.dp_du);
-    const double across = glm::dot(gradient.dp_dv, u), up = safe_length(gradient.dp_dv - u * across);
-    const double per_u = scene.scale / map.width, per_v = scene.scale / map.height;
-    return {safe_length(gradient.dp_du) * per_u, across * per_v, up * per_v};
+    const glm::dvec3 u = unit_or_zero(dp_du);
+    const double across = glm::dot(dp_dv, u), up = safe_length(dp_dv - u * across);
+    return {safe_length(dp_du) / map.width, across / map.height, up / map.height};
 }
 
-/// Degrees between the normals of a surface that rises by the given heights per texel.
-double error_of(const glm::dvec2& rise, const TexelAxes& own, const std::array<double, 2>& given) {
-    const double along = rise.x / own.u;
-    const glm::dvec3 right(-along, -(rise.y - along * own.across) / own.up, 1);
-    const glm::dvec3 used(-rise.x / given[0], -rise.y / given[1], 1);
-    return degrees * std::atan2(glm::length(glm::cross(right, used)), glm::dot(right, used));
+/// The normal, of any length, of a surface that rises by the given heights per texel.
+glm::dvec3 normal_of(const glm::dvec2& rise, const TexelAxes& axes) {
+    const double along = rise.x / axes.u;
+    return {-along, -(rise.y - along * axes.across) / axes.up, 1};
 }
 
-/// Heights per texel at a texture coordinate in texels, before they are rounded to a normal map.
-glm::dvec2 rise_at(const glm::dvec2& t, const PreparedScene& scene) {
+double degrees_between(const glm::dvec3& a, const glm::dvec3& b) {
+    return degrees * std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
+}
+
+/// Calls use(x, y) with the texel at a texture coordinate in texels.
+template <class Use>
+auto with_texel(const glm::dvec2& t, const PreparedScene& scene, Use use) {
     const datapath::MapGeometry& map = scene.registers.map;
     const auto texel = [](double value, std::uint32_t size, datapath::AddressMode mode) {
         const double index = std::floor(value), last = size - 1.0;
         const double inside = mode == datapath::AddressMode::repeat ? index - std::floor(index / size) * size : index;
         return static_cast<std::uint32_t>(std::clamp(inside, 0.0, last));
     };
-    const auto [u, v] = map_rise(scene.map, texel(t.x, map.width, map.address_u), texel(t.y, map.height, map.address_v),
-                                 scene.height_per_code);
+    return use(texel(t.x, map.width, map.address_u), texel(t.y, map.height, map.address_v));
+}
+
+/// Heights per texel, before they are rounded to a normal map.
+glm::dvec2 rise_at(const glm::dvec2& t, const PreparedScene& scene) {
+    const auto [u, v] = with_texel(
+        t, scene, [&](std::uint32_t x, std::uint32_t y) { return map_rise(scene.map, x, y, scene.height_per_code); });
     return {u, v};
+}
+
+/// The displacement, world units.
+double height_at(const glm::dvec2& t, const PreparedScene& scene) {
+    const datapath::Registers& r = scene.registers;
+    return std::ldexp(static_cast<double>(r.displacement.bias), -r.formats.position.fraction) +
+           scene.height_per_code *
+               with_texel(t, scene, [&](std::uint32_t x, std::uint32_t y) { return scene.map.code(x, y); });
 }
 
 /// Calls use(t) at the centres of `parts` * `parts` equal parts of a triangle.
@@ -107,28 +123,49 @@ TexelSpread measure_texel_spread(const BaseMesh& mesh, const PreparedScene& scen
     const double each = static_cast<double>(most_points) / static_cast<double>(chosen);
     const int parts = std::max(1, static_cast<int>(std::sqrt(each)));
     const glm::dvec2 texels(scene.registers.map.width, scene.registers.map.height);
-    Errors errors, of_map;
+    Errors errors, of_map, curved;
+    const TexelAxes given{scene.texel_size[0], 0, scene.texel_size[1]};
     for (std::size_t k = 0; k < mesh.triangles.size(); k += stride) {
         const auto& triangle = mesh.triangles[k];
         const auto gradient = texture_gradient(mesh, triangle);
         if (!gradient)
             continue;
-        const TexelAxes own = texel_axes(*gradient, scene);
+        const glm::dvec3 dp_du = gradient->dp_du * scene.scale, dp_dv = gradient->dp_dv * scene.scale;
+        const TexelAxes own = texel_axes(dp_du, dp_dv, scene);
+        const auto [dn_du, dn_dv] = by_texture(mesh, triangle, &BaseVertex::normal);
         spread.shear = std::max(spread.shear, degrees * std::atan2(std::abs(own.across), own.up));
         std::array<glm::dvec2, 3> corners;
         for (std::size_t corner = 0; corner < 3; ++corner)
             corners[corner] = mesh.vertices[triangle[corner]].texture * texels;
         each_part(corners, parts, [&](const glm::dvec2& t) {
-            const double error = error_of(rise_at(t, scene), own, scene.texel_size);
+            const glm::dvec2 rise = rise_at(t, scene);
+            const glm::dvec3 right = normal_of(rise, own);
+            const double error = degrees_between(right, normal_of(rise, given));
             errors.add(error, gradient->area);
             of_map.add(error, gradient->texture_area);
+            const double height = height_at(t, scene);
+            const TexelAxes displaced = texel_axes(dp_du + height * dn_du, dp_dv + height * dn_dv, scene);
+            curved.add(degrees_between(right, normal_of(rise, displaced)), gradient->area);
         });
     }
     spread.median_error = errors.median();
     spread.largest_error = errors.largest();
     spread.wrong_percent = errors.percent_beyond(TexelSpread::noticeable);
     spread.wrong_map_percent = of_map.percent_beyond(TexelSpread::noticeable);
+    spread.curved_median = curved.median();
+    spread.curved_largest = curved.largest();
+    spread.curved_percent = curved.percent_beyond(TexelSpread::noticeable);
     return spread;
+}
+
+std::string curved_base_remark(const TexelSpread& spread) {
+    if (spread.curved_percent <= 1)
+        return {};
+    return fmt::format(
+        "displacements are not small against the base mesh's radius of curvature, which N' leaves out: normals are off by "
+        "more than {} degrees on {:.3g} % of the surface (median {:.3g}, at most {:.3g} degrees); heights are right. Use a "
+        "base mesh nearer to the displaced surface",
+        TexelSpread::noticeable, spread.curved_percent, spread.curved_median, spread.curved_largest);
 }
 
 std::string texel_spread_remark(const TexelSpread& spread) {
@@ -153,7 +190,7 @@ std::string texel_spread_remark(const TexelSpread& spread) {
     }
     return fmt::format(
         "one texel size serves the whole mesh, but its triangles spread the map differently: {}. Normals are off by more "
-        "than {} degrees on {:.2g} % of the surface and {:.2g} % of the map there (median {:.3g}, at most {:.3g} degrees); "
+        "than {} degrees on {:.3g} % of the surface and {:.3g} % of the map there (median {:.3g}, at most {:.3g} degrees); "
         "heights are right. Unwrap the mesh {}",
         spread_of_map, TexelSpread::noticeable, spread.wrong_percent, spread.wrong_map_percent, spread.median_error,
         spread.largest_error, remedy);

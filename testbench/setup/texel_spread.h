@@ -12,4 +12,7 @@ TexelSpread measure_texel_spread(const BaseMesh& mesh, const PreparedScene& scen
 /// right to `TexelSpread::noticeable`.
 std::string texel_spread_remark(const TexelSpread& spread);
 
+/// The same of displacements that are not small against the base mesh's radius of curvature.
+std::string curved_base_remark(const TexelSpread& spread);
+
 }  // namespace tessera

@@ -16,6 +16,8 @@ struct ThresholdToRegister {
     double scale;  // register's value per unit of the threshold
     double limit;  // the register's highest value
     const char* format_key;
+    int more_bits = 0;  // that the format may have
+    bool zero = true;   // 0 is a meaningful threshold: rounding alone does not exceed it
 };
 
 /// Rounds down. Refuses a value that does not fit, and one that would become 0 although it is not: a test against 0 has
@@ -25,11 +27,14 @@ inline std::int64_t to_register(const ThresholdToRegister& threshold) {
     if (fixed > threshold.limit)
         throw InputError(fmt::format("{} = {} does not fit its register; the largest is {}", threshold.key,
                                      threshold.value, threshold.limit / threshold.scale));
+    const double bits = std::ceil(-std::log2(threshold.value * threshold.scale));
     if (threshold.used && threshold.value > 0 && fixed < 1)
-        throw InputError(
-            fmt::format("{} = {} is less than one step of its register, {}, and would be 0 there: set it to 0, or at "
-                        "least to that step, or raise {}",
-                        threshold.key, threshold.value, 1 / threshold.scale, threshold.format_key));
+        throw InputError(fmt::format(
+            "{} = {} is less than one step of its register, {}, and would be 0 there: {}"
+            "{}",
+            threshold.key, threshold.value, 1 / threshold.scale,
+            threshold.zero ? "set it to 0, or at least to that step" : "set it at least to that step",
+            bits <= threshold.more_bits ? fmt::format(", or raise {} by {}", threshold.format_key, bits) : ""));
     return static_cast<std::int64_t>(fixed);
 }
 

@@ -14,7 +14,8 @@ namespace {
 std::uint32_t to_normal_register(const char* key, double value, bool used, const datapath::Formats& formats) {
     return static_cast<std::uint32_t>(
         to_register({key, value, used, std::ldexp(1.0, formats.normal.fraction),
-                     static_cast<double>(2 * formats.normal.highest + 1), "formats.normal_fraction"}));
+                     static_cast<double>(2 * formats.normal.highest + 1), "formats.normal_fraction",
+                     datapath::FormatLimits::normal_fraction.most - formats.normal.fraction, false}));
 }
 
 }  // namespace
@@ -34,7 +35,8 @@ datapath::TestParameters make_tests(const TestSettings& tests, const datapath::F
     host_of(formats.height_test).set_thresholds(tests, formats, view, result);
     result.view_threshold = static_cast<std::uint32_t>(
         to_register({"tests.view_threshold", tests.view_threshold, tests.view, std::ldexp(1.0, formats.screen.fraction),
-                     std::ldexp(1.0, formats.screen.bits), "formats.screen_fraction"}));
+                     std::ldexp(1.0, formats.screen.bits), "formats.screen_fraction",
+                     datapath::FormatLimits::screen_fraction.most - formats.screen.fraction}));
     result.generation_limit = static_cast<std::uint32_t>(tests.generation_limit);
     return result;
 }

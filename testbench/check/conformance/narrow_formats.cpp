@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <variant>
@@ -11,7 +12,7 @@
 
 namespace tessera {
 
-std::string narrow_formats_warning(const Job& job) {
+std::string narrow_formats_warning(const Job& job, double flips_percent) {
     std::vector<std::string> wider;
     // Texture coordinates and heights are rounded in golden's run, too.
     for (const char* name : {"formats.position_bits", "formats.position_fraction", "formats.normal_bits",
@@ -21,6 +22,11 @@ std::string narrow_formats_warning(const Job& job) {
         if (std::get<std::int64_t>(key.get(job)) < usual)
             wider.push_back(fmt::format("{} = {}", name, usual));
     }
+    if (wider.empty() && flips_percent > job.check.allowed_flips)
+        return fmt::format(
+            "rounding decides more edges than check.allowed_flips = {} allows: raise the threshold of the test that flips "
+            "most (report.txt), or set check.allowed_flips = {:.1f}",
+            job.check.allowed_flips, std::ceil(10 * flips_percent) / 10);
     if (wider.empty())
         return {};
     return fmt::format(

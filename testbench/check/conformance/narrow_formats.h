@@ -6,7 +6,8 @@
 namespace tessera {
 
 /// A warning for a run whose mesh or decisions differ too much from golden's, whose positions and normals are not
-/// rounded: the formats that are narrower than their defaults, and the defaults. Empty if none is.
-std::string narrow_formats_warning(const Job& job);
+/// rounded: the formats that are narrower than their defaults, and the defaults; if none is, and more edges flip than
+/// are allowed, what to set. Else empty.
+std::string narrow_formats_warning(const Job& job, double flips_percent);
 
 }  // namespace tessera

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "testbench/common/error.h"
+#include "testbench/input/mesh/border_points.h"
 #include "testbench/input/mesh/mesh_limits.h"
 #include "testbench/input/mesh/mesh_text.h"
 #include "testbench/input/mesh/obj_text.h"
@@ -52,6 +53,7 @@ class Assembler {
         make_vertices();
         triangles_ = {};
         text_.corners = {};
+        join_border_points(mesh_);
         complete_smooth_normals(mesh_);
         constexpr const char* smooth_normals =
             "Export the mesh with smooth normals, or its faces without normals, as in `f 1/1 2/2 3/3`: smooth ones are "

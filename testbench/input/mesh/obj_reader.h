@@ -17,6 +17,7 @@ namespace tessera {
 /// - Dropped and counted, with a repair: triangles of zero area or with a vertex twice; a triangle at the same three
 ///   positions as an earlier one, of either winding, unless its winding is opposite and its normals differ at all
 ///   corners (a two-sided sheet).
+/// - Points of the border that rounding separates are joined (border_points.h).
 /// - Other anomalies of the surface are accepted with a sentence in `repairs` (surface_flaws.h).
 ///
 /// Errors: as read_obj_text (obj_text.h); InputError also for a file that cannot be read or is not a regular

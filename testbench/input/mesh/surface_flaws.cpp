@@ -11,7 +11,7 @@ namespace tessera {
 namespace {
 
 constexpr double same_normal = 1e-5;  // files often have six decimals; no format of normals distinguishes more
-constexpr double on_edge = 1e-6;      // relative to the edge's length: files often have six decimals
+constexpr double on_edge = 1e-4;      // relative to the edge's length
 
 struct BorderPoint {
     glm::dvec3 position;
@@ -123,40 +123,16 @@ void find_t_junctions(const BaseMesh& mesh, const std::vector<std::array<std::ui
     }
 }
 
-void edge_flaws(const BaseMesh& mesh, const std::vector<std::uint32_t>& same_position, std::uint64_t most_steps,
+void edge_flaws(const BaseMesh& mesh, const SurfaceEdges& edges, std::uint64_t most_steps,
                 std::vector<std::string>& flaws) {
-    // one number per edge and triangle: the lower vertex, the higher, the direction; sorting brings them
-    // together
-    std::vector<std::uint64_t> uses;
-    uses.reserve(mesh.triangles.size() * 3);
-    for (const auto& t : mesh.triangles) {
-        for (std::size_t k = 0; k < 3; ++k) {
-            const std::uint64_t a = same_position[t[k]], b = same_position[t[(k + 1) % 3]];
-            uses.push_back(std::min(a, b) << 33 | std::max(a, b) << 1 | (a < b ? 0u : 1u));
-        }
-    }
-    std::sort(uses.begin(), uses.end());
-    std::size_t crowded = 0, opposed = 0;
-    std::vector<std::array<std::uint32_t, 2>> border;
-    for (std::size_t i = 0; i < uses.size();) {
-        std::size_t end = i;
-        while (end < uses.size() && uses[end] >> 1 == uses[i] >> 1)
-            ++end;
-        if (end - i == 1) {
-            border.push_back(
-                {static_cast<std::uint32_t>(uses[i] >> 33), static_cast<std::uint32_t>(uses[i] >> 1 & UINT32_MAX)});
-        } else if (end - i > 2) {
-            ++crowded;
-        } else {
-            opposed += uses[i] == uses[i + 1];
-        }
-        i = end;
-    }
-    if (crowded > 0)
-        flaws.push_back(fmt::format("{} edge(s) belong to more than two triangles.", crowded));
-    if (opposed > 0)
-        flaws.push_back(fmt::format("The winding changes across {} edge(s): neighbours face opposite ways.", opposed));
-    find_t_junctions(mesh, border, most_steps, flaws);
+    if (edges.crowded > 0)
+        flaws.push_back(fmt::format("{} edge(s) belong to more than two triangles.", edges.crowded));
+    if (mesh.winding_changes > 0)
+        flaws.push_back(fmt::format(
+            "The winding changes across {} edge(s): neighbours face opposite ways. Turn the triangles so that all face "
+            "outside; where this is not possible, separate them.",
+            mesh.winding_changes));
+    find_t_junctions(mesh, edges.border, most_steps, flaws);
 }
 
 void normal_flaws(const BaseMesh& mesh, const std::vector<std::uint32_t>& same_position,
@@ -182,11 +158,42 @@ void normal_flaws(const BaseMesh& mesh, const std::vector<std::uint32_t>& same_p
 
 }  // namespace
 
-std::vector<std::string> surface_flaws(const BaseMesh& mesh, std::uint64_t most_steps,
-                                       std::string_view normals_remedy) {
+SurfaceEdges edges_of_surface(const BaseMesh& mesh, const std::vector<std::uint32_t>& same_position) {
+    // one number per edge and triangle: the lower vertex, the higher, the direction; sorting brings them
+    // together
+    std::vector<std::uint64_t> uses;
+    uses.reserve(mesh.triangles.size() * 3);
+    for (const auto& t : mesh.triangles) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::uint64_t a = same_position[t[k]], b = same_position[t[(k + 1) % 3]];
+            uses.push_back(std::min(a, b) << 33 | std::max(a, b) << 1 | (a < b ? 0u : 1u));
+        }
+    }
+    std::sort(uses.begin(), uses.end());
+    SurfaceEdges edges;
+    for (std::size_t i = 0; i < uses.size();) {
+        std::size_t end = i;
+        while (end < uses.size() && uses[end] >> 1 == uses[i] >> 1)
+            ++end;
+        if (end - i == 1) {
+            edges.border.push_back(
+                {static_cast<std::uint32_t>(uses[i] >> 33), static_cast<std::uint32_t>(uses[i] >> 1 & UINT32_MAX)});
+        } else if (end - i > 2) {
+            ++edges.crowded;
+        } else {
+            edges.opposed += uses[i] == uses[i + 1] ? 1u : 0u;
+        }
+        i = end;
+    }
+    return edges;
+}
+
+std::vector<std::string> surface_flaws(BaseMesh& mesh, std::uint64_t most_steps, std::string_view normals_remedy) {
     const std::vector<std::uint32_t> same_position = first_at_position(mesh.vertices);
     std::vector<std::string> flaws;
-    edge_flaws(mesh, same_position, most_steps, flaws);
+    const SurfaceEdges edges = edges_of_surface(mesh, same_position);
+    mesh.winding_changes = edges.opposed;
+    edge_flaws(mesh, edges, most_steps, flaws);
     normal_flaws(mesh, same_position, normals_remedy, flaws);
     return flaws;
 }

@@ -26,10 +26,11 @@ class CurvatureHost : public HeightTestHost {
     }
     void set_thresholds(const TestSettings& tests, const datapath::Formats& formats, const ViewedScale&,
                         datapath::TestParameters& registers) const override {
-        registers.height_thresholds[0] = to_register(
-            {"tests.curvature_threshold", tests.threshold("curvature_threshold"), tests.summed_height,
-             std::ldexp(static_cast<double>(formats.displacement.highest), datapath::curvature_fraction),
-             std::ldexp(1.0, datapath::curvature_threshold_bits(formats)) - 1, "formats.displacement_bits"});
+        registers.height_thresholds[0] =
+            to_register({"tests.curvature_threshold", tests.threshold("curvature_threshold"), tests.summed_height,
+                         std::ldexp(static_cast<double>(formats.displacement.highest), datapath::curvature_fraction),
+                         std::ldexp(1.0, datapath::curvature_threshold_bits(formats)) - 1, "formats.displacement_bits",
+                         datapath::FormatLimits::displacement_bits.most - formats.displacement.bits});
     }
     void make_table(const TestSettings&, const std::vector<TextureTriangle>& base,
                     PreparedScene& scene) const override {

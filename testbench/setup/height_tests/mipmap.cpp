@@ -29,7 +29,8 @@ class MipmapHost : public HeightTestHost {
         registers.height_thresholds[0] =
             to_register({"tests.mipmap_threshold", tests.threshold("mipmap_threshold"), tests.summed_height,
                          2 * static_cast<double>(formats.displacement.highest),
-                         std::ldexp(1.0, datapath::mipmap_threshold_bits(formats)) - 1, "formats.displacement_bits"});
+                         std::ldexp(1.0, datapath::mipmap_threshold_bits(formats)) - 1, "formats.displacement_bits",
+                         datapath::FormatLimits::displacement_bits.most - formats.displacement.bits});
     }
     void make_table(const TestSettings& tests, const std::vector<TextureTriangle>&,
                     PreparedScene& scene) const override {

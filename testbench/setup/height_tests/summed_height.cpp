@@ -27,7 +27,8 @@ class SummedHeightHost : public HeightTestHost {
         registers.height_thresholds[0] =
             to_register({"tests.summed_height_threshold", tests.threshold("summed_height_threshold"),
                          tests.summed_height, static_cast<double>(formats.displacement.highest) * (area ? 1 : 4),
-                         area ? std::ldexp(1.0, 18) : std::ldexp(1.0, 50), "formats.displacement_bits"});
+                         area ? std::ldexp(1.0, 18) : std::ldexp(1.0, 50), "formats.displacement_bits",
+                         datapath::FormatLimits::displacement_bits.most - formats.displacement.bits});
     }
     void write_table(const PreparedScene& scene, const TableSink& sink) const override {
         const datapath::TableLayout& layout = scene.registers.height_table;

@@ -45,6 +45,7 @@ struct BaseMesh {
 
     std::size_t dropped_degenerate = 0;  ///< triangles of zero area or with the same vertex twice, dropped at loading
     std::size_t dropped_duplicate = 0;   ///< triangles at the three positions of an earlier triangle, dropped
+    std::size_t winding_changes = 0;     ///< edges whose two triangles face opposite ways
     std::vector<std::string> repairs;    ///< one sentence each, for the report: repairs, and anomalies left unchanged
 };
 

@@ -246,13 +246,16 @@ void complete_tangent_frames(BaseMesh& mesh) {
     say(cancelling,
         "At {} point(s) the directions of dp/du cancel (for example at a pole): they have no tangent, and their "
         "normals are those of the base mesh.");
-    say(torn,
-        "At {} point(s) the texture is mirrored in some triangles and not in others, with the same texture "
-        "coordinates: they have no tangent, so that the surface stays closed, and their normals are those of the base "
-        "mesh. To give them one, unwrap the mirrored part to a place of its own in the map.");
+    if (torn > 0)
+        mesh.repairs.push_back(fmt::format(
+            "At {} point(s) the texture is mirrored in some triangles and not in others, with the same texture "
+            "coordinates: they have no tangent, so that the surface stays closed, and their normals are those of the "
+            "base mesh. To give them one, {}unwrap the mirrored part to a place of its own in the map, or, where it is "
+            "folded over, without triangles turned over.",
+            torn, mesh.winding_changes > 0 ? "first make the winding of all triangles the same, then " : ""));
     say(blank,
-        "{} triangle(s) have only such points, and the map does not show in their normals: cut them so that each has a "
-        "corner off the mirrored edges.");
+        "{} triangle(s) have only such points, and the map does not show in their normals: cut them so that no edge but "
+        "the mirrored ones joins two such points.");
     say(slips,
         "At {} point(s) a few small triangles are mirrored in texture space against the others around them, whose "
         "tangent they get: the normals in these triangles are wrong. Unwrap the mesh without triangles turned over.");

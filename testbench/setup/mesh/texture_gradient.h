@@ -16,6 +16,18 @@ struct TextureGradient {
     double texture_area;      ///< in units of u times v
 };
 
+/// Derivatives of a vector of the vertices by u and by v; the triangle has an area in texture space.
+inline std::array<glm::dvec3, 2> by_texture(const BaseMesh& mesh, const std::array<std::uint32_t, 3>& triangle,
+                                            glm::dvec3 BaseVertex::*vector) {
+    const BaseVertex& a = mesh.vertices[triangle[0]];
+    const BaseVertex& b = mesh.vertices[triangle[1]];
+    const BaseVertex& c = mesh.vertices[triangle[2]];
+    const glm::dvec2 ab = b.texture - a.texture, ac = c.texture - a.texture;
+    const double determinant = ab.x * ac.y - ab.y * ac.x;
+    const glm::dvec3 p = b.*vector - a.*vector, q = c.*vector - a.*vector;
+    return {(p * ac.y - q * ab.y) / determinant, (q * ab.x - p * ac.x) / determinant};
+}
+
 /// Nothing if the triangle has no area in texture space (or so little that a gradient is not finite).
 inline std::optional<TextureGradient> texture_gradient(const BaseMesh& mesh,
                                                        const std::array<std::uint32_t, 3>& triangle) {
@@ -28,14 +40,13 @@ inline std::optional<TextureGradient> texture_gradient(const BaseMesh& mesh,
         triangle_normal(glm::dvec3(a.texture, 0), glm::dvec3(b.texture, 0), glm::dvec3(c.texture, 0));
     if (facing.z == 0)
         return std::nullopt;
-    const double determinant = ab.x * ac.y - ab.y * ac.x;
-    const glm::dvec3 p = b.position - a.position, q = c.position - a.position;
     TextureGradient gradient;
-    gradient.dp_du = (p * ac.y - q * ab.y) / determinant;
-    gradient.dp_dv = (q * ab.x - p * ac.x) / determinant;
+    const auto [dp_du, dp_dv] = by_texture(mesh, triangle, &BaseVertex::position);
+    gradient.dp_du = dp_du;
+    gradient.dp_dv = dp_dv;
     gradient.mirrored = facing.z < 0;
     gradient.area = triangle_area(a.position, b.position, c.position);
-    gradient.texture_area = std::abs(determinant) / 2;
+    gradient.texture_area = std::abs(ab.x * ac.y - ab.y * ac.x) / 2;
     const double check = safe_length(gradient.dp_du) + safe_length(gradient.dp_dv);
     if (!std::isfinite(check))
         return std::nullopt;

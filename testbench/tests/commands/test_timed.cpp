@@ -52,6 +52,8 @@ TEST_CASE("timed run: twice the key that the bottleneck names takes fewer cycles
              {{"timing.off_chip_bandwidth=1", "timing.summed_height_table_cache_bytes=256"},
               "timing.off_chip_bandwidth"},
              none({"timing.summed_height_table_ports=16"}),
+             none({"timing.summed_height_table_ports=8"}),
+             none({"timing.normal_map_latency=80"}),
              none({"timing.transform_interval=20"}),
              none({"timing.summed_height_table_cache_bytes=256", "timing.summed_height_table_ports=4"}),
              none({"hardware.height_test=curvature"}),
@@ -131,6 +133,20 @@ TEST_CASE("timed run: a size that is rounded is noted with sizes that are not, a
     }
 }
 
+TEST_CASE("a key of timed mode is noted in functional mode, and machines without a base triangle") {
+    const TestFolder here;
+    const std::string text =
+        succeed(Arguments{"run", "--set", "output.folder=out"} +
+                    set(unchecked + small +
+                        Arguments{"mode=functional", "timing.summed_height_table_ports=4", "hardware.queue_capacity=4",
+                                  "hardware.machines=3", "mesh.columns=1", "mesh.rows=1"}),
+                here.path())
+            .out;
+    for (const char* const key : {"timing.summed_height_table_ports = 4", "hardware.queue_capacity = 4"})
+        CHECK_THAT(text, Contains(std::string("note: ") + key + " has no effect: mode = \"functional\""));
+    CHECK_THAT(text, Contains("note: hardware.machines = 3: only 2 work, since the base mesh has 2 triangles"));
+}
+
 TEST_CASE("timed run: a key without effect in the design is noted, and has none") {
     const TestFolder here;
     const auto run = [&](const Arguments& settings) {
@@ -155,6 +171,8 @@ TEST_CASE("timed run: a key without effect in the design is noted, and has none"
     without_effect({}, "timing.stalls_seed", "5");
     without_effect({}, "hardware.off_chip_triangles", "5");
     without_effect({}, "tests.rank_threshold", "0.2");
+    without_effect({}, "timing.summed_height_table_interleave", "\"xor\"");
+    without_effect({}, "formats.rank_bits", "7");
     without_effect({}, "mesh.spacing", "32");
     without_effect({}, "mesh.radius", "3.0");
     without_effect({"mesh.source=sphere"}, "mesh.width", "3.0");

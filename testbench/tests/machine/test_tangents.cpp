@@ -22,6 +22,7 @@
 #include "testbench/tests/support/bare_mesh.h"
 #include "testbench/tests/support/case_table.h"
 #include "testbench/tests/support/job_settings.h"
+#include "testbench/tests/support/job_setup.h"
 #include "testbench/tests/support/text.h"
 
 using namespace tessera;
@@ -415,6 +416,31 @@ TEST_CASE("one texel size: an island that is small on the surface and large in t
                                         << setup.texel_spread.wrong_map_percent);
     CHECK(setup.texel_spread.wrong_map_percent > 1);
     CHECK_THAT(testing::joined(setup.remarks), Contains("one texel size") && Contains("% of the map there"));
+}
+
+TEST_CASE("displacements beside the radius of curvature: their error in N' is said") {
+    // r = R + h: the normal's slope is r' / R, and r' / r is right. Here r' = S / 2 pi, S = R = 1.
+    const MachineSetup setup = testing::setup_of(testing::with_settings(
+        {}, "mesh.source=cylinder mesh.columns=64 map.source=ramp map.address_u=repeat displacement.scale=1"));
+    const auto slope = [](double radius) { return degrees * std::atan(1 / (2 * pi * radius)); };
+    CHECK(setup.texel_spread.curved_largest == Approx(slope(1) - slope(2)).margin(0.1));
+    CHECK(setup.texel_spread.curved_median == Approx(slope(1) - slope(1.5)).margin(0.1));
+    CHECK_THAT(testing::joined(setup.remarks), Contains("radius of curvature"));
+    for (const char* const small :
+         {"mesh.source=cylinder displacement.scale=0.02", "mesh.source=plane displacement.scale=1"})
+        CHECK_THAT(testing::joined(testing::setup_of(testing::with_settings({}, small)).remarks),
+                   !Contains("radius of curvature"));
+}
+
+TEST_CASE("texture coordinates beyond the map by rounding are no fault") {
+    const auto beyond = [](double by) {
+        return setup_of(Plane{1, 1, {{{-by, 0}, {1 + 2 * by, 0}, {0, 1 + by}}}}.mesh(), hill_map());
+    };
+    for (const double by : {0.0, 1e-9, 1e-6, 2e-4}) {
+        CHECK(beyond(by).texture_clamped == 0);
+        CHECK_THAT(testing::joined(beyond(by).remarks), !Contains("outside 0..1"));
+    }
+    CHECK(beyond(1e-3).texture_clamped == 4);
 }
 
 TEST_CASE("one texel size: triangles with next to no area in the map are said") {

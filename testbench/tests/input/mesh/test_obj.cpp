@@ -197,9 +197,53 @@ TEST_CASE("T-junctions, non-manifold edges and changes of winding are reported")
     CHECK_THAT(testing::joined(book.repairs), Contains("1 edge(s) belong to more than two triangles"));
     const BaseMesh twisted = parse(square + "f 1/1 2/2 3/3\nf 1/1 4/4 3/3\n");
     CHECK_THAT(testing::joined(twisted.repairs), Contains("The winding changes across 1 edge(s)"));
+    CHECK(twisted.winding_changes == 1);
     CHECK_THAT(testing::joined(twisted.repairs),
                Contains("At 2 point(s) the normals of the surrounding triangles cancel"));
     require_complete(twisted);
+}
+
+TEST_CASE("points of the border that rounding separates are joined, and near ones are told") {
+    // A tube of a square section; the last column repeats the first, `apart` away.
+    const auto tube = [](double apart, const char* shortest = "") {
+        const std::string a = fmt::format("{}", 1 + apart);
+        return parse("v 1 0 0\nv 0 1 0\nv -1 0 0\nv 0 -1 0\nv " + a + " 0 0\nv 1 0 2\nv 0 1 2\nv -1 0 2\nv 0 -1 2\nv " +
+                     a +
+                     " 0 2\nvt 0 0\nvt .25 0\nvt .5 0\nvt .75 0\nvt 1 0\nvt 0 1\nvt .25 1\nvt .5 1\nvt .75 1\nvt 1 1\n"
+                     "f 1/1 2/2 7/7 6/6\nf 2/2 3/3 8/8 7/7\nf 3/3 4/4 9/9 8/8\nf 4/4 5/5 10/10 9/9\n" +
+                     shortest);
+    };
+    const BaseMesh exact = tube(0);
+    CHECK(exact.repairs.empty());
+    for (const double apart : {1e-12, 1e-8, 1.9e-6}) {
+        const BaseMesh joined = tube(apart);
+        INFO(apart << testing::joined(joined.repairs));
+        CHECK_THAT(testing::joined(joined.repairs),
+                   Contains("2 point(s) of the border lay within 2e-06 of another, and were joined to it"));
+        for (std::size_t k = 0; k < exact.vertices.size(); ++k) {
+            CHECK(joined.vertices[k].position == exact.vertices[k].position);
+            CHECK(joined.vertices[k].normal == exact.vertices[k].normal);
+        }
+    }
+    for (const double apart : {2.1e-6, 1.9e-4})
+        CHECK_THAT(
+            testing::joined(tube(apart).repairs),
+            Contains("2 point(s) of the border lie within 0.0002 of another: the displaced surface opens there"));
+    CHECK(tube(2.1e-4).repairs.empty());
+    // A triangle between the two would collapse.
+    const BaseMesh small = tube(1e-6, "v 1 1e-6 0\nf 1/1 5/5 11/2\n");
+    CHECK(small.triangles.size() == 9);
+    CHECK_THAT(testing::joined(small.repairs), Contains("1 point(s) of the border lay within"));
+}
+
+TEST_CASE("T-junctions are reported if they are off their edge by rounding") {
+    const auto with = [](const char* y) {
+        return testing::joined(parse(std::string("v 0 0 0\nv 2 0 0\nv 1 2 0\nv 1 ") + y +
+                                     " 0\nv 0 -2 0\nv 2 -2 0\nf 1 2 3\nf 1 5 4\nf 4 5 6\nf 4 6 2\n")
+                                   .repairs);
+    };
+    CHECK_THAT(with("-1e-4"), Contains("1 border edge(s) contain another vertex"));
+    CHECK_THAT(with("-1e-2"), !Contains("contain another vertex"));
 }
 
 TEST_CASE("given normals are normalised, and computed if their length is zero") {
