@@ -39,6 +39,8 @@ inline const std::map<std::string, std::vector<Remedy>>& remedies() {
               "hole 0 > a.pgm; run map.file=a.pgm map.no_data=$1"},
              {"hole 1 > a.pgm; run map.file=a.pgm map.no_data=65535", "export the map again without interpolation across them",
               "hole 0 > a.pgm; run map.file=a.pgm map.no_data=65535"},
+             {"run map.no_data=nan", "leave it out", "run"},
+             {"run 'map.range=[1, 0]'", "give two different numbers, the lower first", "run 'map.range=[0, 1]'"},
              {"run map.source=text 'map.text='", "set map.text", "run map.source=text map.text=A"},
              {"run map.source=constant map.value=0.5 map.no_data=0.5", "set map.no_data = []", ""},
              {"run formats.texture_integer=5", "set formats.texture_integer = {}", ""},
