@@ -79,7 +79,9 @@ struct FaultOf {
         for (const double end : value)
             if (std::string fault = number(end); !fault.empty())
                 return fault;
-        return value[0] < value[1] ? "" : "has a low end that is not below its high end: give two different numbers, the lower first";
+        return value[0] < value[1]
+                   ? ""
+                   : "has a low end that is not below its high end: give two different numbers, the lower first";
     }
     std::string operator()(const std::array<double, 3>& value) const {
         if (key.kind != KeyKind::vector)
@@ -96,7 +98,9 @@ struct FaultOf {
             return fmt::format("has {} numbers; the limit is {}", values.size(), most_numbers);
         const bool finite =
             std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
-        return finite ? "" : "has a number that is not finite: leave it out; NaN and infinite texels are missing data by themselves";
+        return finite
+                   ? ""
+                   : "has a number that is not finite: leave it out; NaN and infinite texels are missing data by themselves";
     }
     std::string operator()(const std::string& value) const {
         const bool textual = key.kind == KeyKind::choice || key.kind == KeyKind::span || key.kind == KeyKind::text ||
