@@ -8,6 +8,7 @@
 
 #include "modules/version.h"
 #include "testbench/tests/support/program_runner.h"
+#include "testbench/tests/support/text.h"
 
 // The libraries in other projects: installed, and as a subfolder.
 
@@ -225,11 +226,13 @@ Environment at_home(const fs::path& home) {
     return {{"HOME", home.string()}, {"CXX", TESSERA_COMPILER}, {"CXXFLAGS", strict}};
 }
 
-ProgramEnd run_with_library(const fs::path& library, const Arguments& settings, const fs::path& folder) {
+ProgramEnd run_with_library(const fs::path& library, const Arguments& settings, const fs::path& folder,
+                            Environment environment = {}) {
     Arguments command{"run", "--set", "output.folder=out"};
     for (const std::string& setting : settings)
         command = command + Arguments{"--set", setting};
-    return run_tessera(command, folder, {}, {{"TESSERA_HEIGHT_TESTS", library.string()}});
+    environment.emplace_back("TESSERA_HEIGHT_TESTS", library.string());
+    return run_tessera(command, folder, {}, environment);
 }
 
 }  // namespace
@@ -274,33 +277,47 @@ TEST_CASE("a height test of one's own that is wrong fails its run, and names the
     const std::vector<std::string> build{
         commands[0], std::regex_replace(commands[1], std::regex("-S \\S+"), "-S ~/edited"), commands[2]};
     struct Fault {
-        const char *file, *before, *after, *threshold, *says;
+        const char *file, *right, *wrong, *threshold, *says;
         int exit_code = 1;
     };
-    for (const Fault& fault :
-         {Fault{"host.h", "std::max(high[to]", "std::min(high[to]", "0.05", "range table: "},
-          {"host.h", "highest, highest,", "highest / 2, highest,", "0.05", "tests.range_threshold = "},
-          {"range_test.h", "highest - lowest > limit", "highest - lowest >= limit", "0", "FAILED: conformance"},
-          {"range_test.h", "table.rows = 1;", "table.rows = 2;", "0.05", "range_table.rows = 2"},
-          {"range_test.h", "latency = 2;", "latency = 0;", "0.05",
-           "height test range: latency = 0, but the range is 1 to 1000000", 2},
-          {"range_test.h", "\"range_threshold\", f", "\"range_limit\", f", "0.05",
-           "the register of range_limit has no key in the host's part", 2}}) {
-        INFO(fault.before);
-        const std::string right = read_all(height_test / fault.file);
-        const std::size_t at = right.find(fault.before);
-        REQUIRE(at != std::string::npos);
-        write_all(home.path() / "edited" / fault.file,
-                  std::string(right).replace(at, std::string(fault.before).size(), fault.after));
-        for (const std::string& command : build)
-            require_success({"bash", "-euc", command + " 2>&1"}, source_folder(), at_home(home.path()));
-        const ProgramEnd end = run_with_library(
-            home.path() / "range/librange_test.so",
-            {"hardware.height_test=range", std::string("tests.range_threshold=") + fault.threshold}, home.path());
+    const std::vector<Fault> faults{
+        {"host.h", "std::max(high[to], highest[from])", "std::min(high[to], highest[from])", "0.05", "range table: "},
+        {"host.h", "static_cast<double>(formats.displacement.highest)",
+         "static_cast<double>(formats.displacement.highest) / 2", "0.05", "tests.range_threshold = "},
+        {"range_test.h", "highest - lowest > limit(1, r.tests)", "highest - lowest >= limit(1, r.tests)", "0",
+         "FAILED: conformance"},
+        {"range_test.h", "table.rows = 1", "table.rows = 2", "0.05", "range_table.rows = 2"},
+        {"range_test.h", "latency = 2", "latency = 0", "0.05",
+         "height test range: latency = 0, but the range is 1 to 1000000", 2},
+        {"range_test.h", "\"range_threshold\"", "\"range_limit\"", "0.05",
+         "the register of range_limit has no key in the host's part", 2}};
+    // One library has all faults; FAULT chooses one by its number.
+    const auto edit = [&](const char* file, const std::string& before, const std::string& after) {
+        const fs::path path = home.path() / "edited" / file;
+        write_all(path, testing::replaced(read_all(path), before, after));
+    };
+    for (std::size_t k = 0; k < faults.size(); ++k)
+        edit(faults[k].file, faults[k].right,
+             "(fault(" + std::to_string(k) + ") ? (" + faults[k].wrong + ") : (" + faults[k].right + "))");
+    edit("range_test.h", "constexpr RangeTest()", "RangeTest()");
+    edit("blocks.h", "#pragma once\n",
+         "#pragma once\n#include <cstdlib>\n"
+         "inline bool fault(int number) {\n"
+         "    const char* const chosen = std::getenv(\"FAULT\");\n"
+         "    return chosen != nullptr && std::atoi(chosen) == number;\n"
+         "}\n");
+    for (const std::string& command : build)
+        require_success({"bash", "-euc", command + " 2>&1"}, source_folder(), at_home(home.path()));
+    for (std::size_t k = 0; k <= faults.size(); ++k) {
+        const Fault& fault = k < faults.size() ? faults[k] : Fault{"", "", "", "0.05", "range", 0};
+        INFO(k << ' ' << fault.wrong);
+        const ProgramEnd end =
+            run_with_library(home.path() / "range/librange_test.so",
+                             {"hardware.height_test=range", std::string("tests.range_threshold=") + fault.threshold},
+                             home.path(), {{"FAULT", std::to_string(k)}});
         INFO(end.text());
         CHECK(end.exit_code == fault.exit_code);
         CHECK_THAT(fault.exit_code == 2 ? end.err : read_all(home.path() / "out/report.txt"), Contains(fault.says));
-        write_all(home.path() / "edited" / fault.file, right);
     }
 }
 
