@@ -40,9 +40,26 @@ def options_from(arguments):
     return options
 
 
+def with_new_values(designs, seen):
+    """Of these designs, those with a value of an axis that neither the seen ones nor those before have."""
+    values = {place for design in seen for place in enumerate(design.positions)}
+    for design in designs:
+        if not values.issuperset(enumerate(design.positions)):
+            values.update(enumerate(design.positions))
+            yield design
+
+
 def probe(sweep, planner, store, designs):
-    """Runs a design of each scene, unless there is a result; checks the figures' names. Returns seconds per run by scene."""
+    """Runs a design of each scene, unless there is a result; checks the figures' names, if need be with a run for each value
+    of the axes, since a figure may belong to some designs only. Returns seconds per run by scene."""
     seconds, known, tried = {}, set(), []
+
+    def look_at(result):
+        if result["exit_code"] == 0:
+            tried.append(result)
+            known.update(result["figures"])
+            known.update(measured(sweep, result)[0])
+
     for scene in sweep.scenes:
         here = [design for design in designs if design.scene == scene and design.key]
         if not here:
@@ -53,10 +70,14 @@ def probe(sweep, planner, store, designs):
         if results:
             seconds[scene] = statistics.mean(result["seconds"] for result in results)
         for result in results:
-            if result["exit_code"] == 0:
-                tried.append(result)
-                known.update(result["figures"])
-                known.update(measured(sweep, result)[0])
+            look_at(result)
+    runnable = [design for design in designs if design.key]
+    for design in with_new_values(runnable, [design for design in runnable if store.has(design.key)]):
+        if known.issuperset(sweep.wanted):
+            break
+        perform(store, planner.task(design), sweep.longest_run)
+        if store.has(design.key):
+            look_at(store.read(design.key))
     if not tried:
         print("scripts/sweep: no design finished; the names of the figures are not checked", file=sys.stderr)
         return seconds

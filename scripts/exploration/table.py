@@ -87,18 +87,20 @@ def mark_fronts(sweep, rows):
 
 
 def idle_axes(table):
-    """The axes, as text, along which no figure changes: in no two finished runs that differ in that axis alone."""
+    """The axes, as text, along which no figure changes, nor whether a run finishes: in no two runs that differ in that axis
+    alone, one of them finished."""
     idle, first = [], 0
     for axis in table.sweep.axes:
         after = first + len(axis.columns)
         groups = {}
         for row in table.rows:
-            if row.status == "ok":
+            if row.status in ("ok", "failed"):
                 cells = row.design.cells
                 others = repr((row.design.scene, cells[:first], cells[after:]))
-                groups.setdefault(others, []).append((cells[first:after], row.figures))
-        compared = [group for group in groups.values() if any(cells != group[0][0] for cells, _ in group)]
-        if compared and all(figures == group[0][1] for group in compared for _, figures in group):
+                groups.setdefault(others, []).append((cells[first:after], (row.status, row.figures)))
+        compared = [group for group in groups.values() if any(cells != group[0][0] for cells, _ in group)
+                    and any(status == "ok" for _, (status, _) in group)]
+        if compared and all(result == group[0][1] for group in compared for _, result in group):
             idle.append(", ".join(axis.columns))
         first = after
     return idle

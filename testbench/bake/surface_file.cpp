@@ -171,6 +171,7 @@ NurbsPatch read_bezier(TomlFields& fields) {
 }
 
 void read_domain(TomlFields& fields, Surface& surface) {
+    surface.has_domain = true;
     for (const int k : {0, 1}) {
         const char* const key = k == 0 ? "x" : "y";
         if (!fields.has(key))

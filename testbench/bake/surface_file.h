@@ -26,6 +26,7 @@ struct Surface {
     /// The rectangle of the plane z = 0 that the map spans, unless there is a base mesh; model units. A patch is
     /// stretched over it.
     glm::dvec2 low{-1}, high{1};
+    bool has_domain = false;  ///< the file gives it
 };
 
 /// Reads a surface file, TOML: one of these tables, and optionally [domain]. Unknown keys are errors.

@@ -22,7 +22,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The job whose base mesh the map is baked for: the given one, or the default job on a plane of the surface's size.
+/// The job whose base mesh the map is baked for: the given one, or the default job on a plane of the surface's size. Of
+/// its map it keeps what does not belong to another map's values; a lattice has the new map's size.
 Job base_job(const BakeRequest& request, const Surface& surface, const fs::path& data_folder) {
     Job job;
     if (request.mesh_job.empty()) {
@@ -30,7 +31,28 @@ Job base_job(const BakeRequest& request, const Surface& surface, const fs::path&
         job.mesh.depth = surface.high.y - surface.low.y;
         return job;
     }
-    return load_job(request.mesh_job.string(), {}, data_folder);
+    job = load_job(request.mesh_job.string(), {}, data_folder);
+    Job::Map map;
+    map.source = MapSource::constant;
+    map.width = request.width;
+    map.height = request.height;
+    map.heights = job.map.heights;
+    map.address_u = job.map.address_u;
+    map.address_v = job.map.address_v;
+    job.map = map;
+    return job;
+}
+
+/// What becomes of the surface file's rectangle.
+std::string domain_text(const BakeRequest& request, const Surface& surface) {
+    const glm::dvec2 centre = (surface.low + surface.high) / 2.0;
+    if (!request.mesh_job.empty())
+        return surface.has_domain ? "  note: [domain] is not used: the base mesh of --mesh gives the region\n" : "";
+    return centre == glm::dvec2(0)
+               ? ""
+               : fmt::format(
+                     "  note: the job's plane is centred at the origin: the surface is moved by ({:.6g}, {:.6g})\n",
+                     -centre.x, -centre.y);
 }
 
 BakedMap bake(const BakeRequest& request, const Surface& surface, const Job& job) {
@@ -95,11 +117,12 @@ ExitCode bake_command(const BakeRequest& request, const fs::path& data_folder) {
     const EncodedMap file = encode_height_map(map.width, map.height, map.values, request.format);
     progress.clear();
 
+    const Job::Map built_in;
     job.map.source = MapSource::file;
     job.map.file = rebase_path(request.output.string(), "", job.folder);
     job.map.path = request.output;
-    job.map.fingerprint.clear();
-    job.map.channel.clear();
+    job.map.width = built_in.width;
+    job.map.height = built_in.height;
     job.displacement = {file.scale, file.bias};
     job.output.folder = "runs/" + name;
     validate(job);
@@ -112,8 +135,9 @@ ExitCode bake_command(const BakeRequest& request, const fs::path& data_folder) {
     write_file(request.output, file.bytes);
     write_file(job_file, job_text);
     files.commit();
-    fmt::print("{}  {} and {}: tessera run {}\n", summary(map, file), request.output.lexically_normal().string(),
-               job_file.filename().string(), job_file.lexically_normal().string());
+    fmt::print("{}{}  {} and {}: tessera run {}\n", summary(map, file), domain_text(request, surface),
+               request.output.lexically_normal().string(), job_file.filename().string(),
+               job_file.lexically_normal().string());
     return ExitCode::fine;
 }
 

@@ -265,7 +265,8 @@ Ending run_once(const Job& asked, const Command& command, const std::string& nam
     }
     if ((checks.conformance && checks.conformance->flips_percent() > checks.allowed_flips) ||
         (checks.end_to_end && !checks.end_to_end->passed()))
-        warn(narrow_formats_warning(job, checks.conformance ? checks.conformance->flips_percent() : 0));
+        warn(narrow_formats_warning(job, checks.conformance ? checks.conformance->flips_percent() : 0,
+                                    checks.end_to_end && !checks.end_to_end->passed() ? &*checks.end_to_end : nullptr));
     if (setup.bound_asked) {
         progress.show("measuring the bound", 0.8);
         const Totals totals(simulation);

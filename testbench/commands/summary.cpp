@@ -250,8 +250,8 @@ std::string summary(const MachineSetup& setup, const Simulation& simulation, con
                             count(decided.stopped_by_tex_coord_alone), count(decided.stopped_by_generation_alone),
                             count(decided.stopped_by_several)));
     text += work_rows(simulation, mesh);
-    text += row("triangle queue",
-                fmt::format("at most {} triangles waiting, {} bits each", count(totals.most_queued), widths.triangle));
+    text += row("triangle queue", fmt::format("at most {} triangles waiting, {} bits each{}", count(totals.most_queued),
+                                              widths.triangle, one_after_another(setup)));
     text += row(
         (height_test_text(setup) + " table").c_str(),
         fmt::format("{} bytes, {} bit entries{}; {} reads, {:.1f} per edge",

@@ -218,7 +218,7 @@ std::vector<KeyTable> declare_keys() {
     TableList list;
     // clang-format off
     list.top_level("How the model runs.", [](const auto& key) {
-        key.add("mode", &Job::mode, "functional: all results except cycle counts, fastest; timed: cycle-accurate");
+        key.add("mode", &Job::mode, "functional: all results except cycle counts and the triangle queue's level, fastest; timed: cycle-accurate");
     });
     list.table("mesh", &Job::mesh, "The base mesh.", [](const auto& key) {
         using Mesh = Job::Mesh;

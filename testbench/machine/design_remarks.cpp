@@ -79,7 +79,7 @@ std::string width_remark(const SizedTable& table) {
                                table.name, width, entry, cycles, cycles == 1 ? "cycle" : "cycles", same);
 }
 
-/// Keys, by the beginnings of their names, that have no effect; and why.
+/// Keys that have no effect, by name or, up to '_' or '.', by the beginning of several; and why.
 struct Idle {
     std::vector<std::string> keys;
     std::string because;
@@ -193,8 +193,10 @@ std::vector<std::string> design_remarks(const Job& job, const MachineSetup& setu
         for (const Key& key : find_table(name)->keys) {
             const std::string value = toml_value(key.get(job)), setting = fmt::format("{} = {}", key.name, value);
             const auto why = std::find_if(idle.begin(), idle.end(), [&](const Idle& it) {
-                return std::any_of(it.keys.begin(), it.keys.end(),
-                                   [&](const std::string& with) { return key.name.rfind(with, 0) == 0; });
+                return std::any_of(it.keys.begin(), it.keys.end(), [&](const std::string& its) {
+                    const bool begins = its.back() == '_' || its.back() == '.';
+                    return begins ? key.name.rfind(its, 0) == 0 : key.name == its;
+                });
             });
             const bool said = std::any_of(setup.remarks.begin(), setup.remarks.end(),
                                           [&](const std::string& remark) { return remark.rfind(setting, 0) == 0; });
@@ -202,8 +204,8 @@ std::vector<std::string> design_remarks(const Job& job, const MachineSetup& setu
                 remarks.push_back(fmt::format("{} has no effect: {}", setting, why->because));
         }
     if (const std::size_t base = setup.base_triangles.size(); setup.machines > base)
-        remarks.push_back(fmt::format("hardware.machines = {}: only {} work, since the base mesh has {} triangles",
-                                      setup.machines, base, base));
+        remarks.push_back(fmt::format("hardware.machines = {}: only {} work, since the base mesh has {} triangle{}",
+                                      setup.machines, base, base, base == 1 ? "" : "s"));
     return remarks;
 }
 

@@ -40,4 +40,9 @@ struct Totals {
     std::uint64_t thrown_away_vertices() const { return positions - 3 * base_triangles - counts.edges_split; }
 };
 
+/// Words beside the queue's levels: in functional mode one triangle passes the machine before the next.
+inline const char* one_after_another(const MachineSetup& setup) {
+    return setup.design.transport == Transport::blocking ? "; one after another: timed mode has the machine's" : "";
+}
+
 }  // namespace tessera

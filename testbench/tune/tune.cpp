@@ -94,19 +94,23 @@ const char* density_of(const TuneRequest& request) {
                     request.goal.triangles));
 }
 
-void refuse_beyond_finest(const TuneRequest& request, const std::vector<Explored>& explored) {
+void refuse_beyond_finest(const TuneRequest& request, const std::vector<Explored>& explored, const HeightMap& map) {
     std::uint64_t most = 0;
+    const auto [low, high] = map.extremes();
     for (const Explored& e : explored) {
         if (e.too_large || !e.finest.complete || e.finest.triangles == request.goal.triangles)
             return;
         most = std::max(most, e.finest.triangles);
     }
-    throw InputError(
-        fmt::format("--triangles {}: with every threshold at 0 there are {}, the most possible: the Tex Coord Test "
-                    "(the map's resolution), tests.generation_limit = {} or a test that is not searched stops every "
-                    "edge; "
-                    "use at most {}",
-                    request.goal.triangles, most, request.job.tests.generation_limit, most));
+    throw InputError(fmt::format(
+        "--triangles {}: with every threshold at 0 there are {}, the most possible: {}; use at most {}",
+        request.goal.triangles, most,
+        low == high || request.job.displacement.scale == 0
+            ? "the map has no relief, so that no edge requests a split"
+            : fmt::format("the Tex Coord Test (the map's resolution), tests.generation_limit = {} or a test "
+                          "that is not searched stops every edge",
+                          request.job.tests.generation_limit),
+        most));
 }
 
 /// To the six digits that are printed, not below the value.
@@ -188,7 +192,7 @@ TuneResult tune(const TuneRequest& request, const HeightMap& map,
         e.found = search.found();
     });
     if (goal.triangles > 0)
-        refuse_beyond_finest(request, explored);
+        refuse_beyond_finest(request, explored, map);
 
     std::vector<std::size_t> order;
     for (std::size_t k = 0; k < bases; ++k)

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <future>
@@ -63,6 +64,8 @@ struct EndToEndResult {
     double allowed_farther() const { return 3 * allowed.triangles; }
     /// From the points within `rounding` and the points farther away, which are within `displacement`.
     double allowed_rms_model() const { return allowed.rounding + std::sqrt(farther() / 100) * allowed.displacement; }
+    /// The least Allowed::triangles with which these numbers pass.
+    double least_allowed() const { return std::max(std::abs(more_triangles()), farther() / 3); }
     bool empty() const { return hardware_to_golden.measured == 0 || golden_to_hardware.measured == 0; }
     bool passed() const;
 };

@@ -12,7 +12,7 @@
 
 namespace tessera {
 
-std::string narrow_formats_warning(const Job& job, double flips_percent) {
+std::string narrow_formats_warning(const Job& job, double flips_percent, const EndToEndResult* golden_run) {
     std::vector<std::string> wider;
     // Texture coordinates and heights are rounded in golden's run, too.
     for (const char* name : {"formats.position_bits", "formats.position_fraction", "formats.normal_bits",
@@ -27,6 +27,11 @@ std::string narrow_formats_warning(const Job& job, double flips_percent) {
             "rounding decides more edges than check.allowed_flips = {} allows: raise the threshold of the test that flips "
             "most (report.txt), or set check.allowed_flips = {:.1f}",
             job.check.allowed_flips, std::ceil(10 * flips_percent) / 10);
+    if (wider.empty() && golden_run != nullptr && !golden_run->bound_hit && !golden_run->empty())
+        return fmt::format(
+            "rounding decides some edges otherwise than in golden's own run, which is much in a mesh of {} triangles: use a "
+            "finer mesh or other thresholds, or set check.allowed_triangles = {:.1f}",
+            golden_run->hardware_triangles, std::ceil(10 * golden_run->least_allowed()) / 10);
     if (wider.empty())
         return {};
     return fmt::format(

@@ -60,6 +60,7 @@ class Assembler {
             "then calculated.";
         for (std::string& flaw : surface_flaws(mesh_, largest_search, smooth_normals))
             mesh_.repairs.push_back(std::move(flaw));
+        count_leaning_normals(mesh_);
         complete_tangent_frames(mesh_);
         measure_texture_scale(mesh_);
         return std::move(mesh_);

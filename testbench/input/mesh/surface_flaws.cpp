@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "testbench/setup/mesh/equal_groups.h"
 #include "testbench/setup/mesh/triangle_geometry.h"
@@ -196,6 +197,42 @@ std::vector<std::string> surface_flaws(BaseMesh& mesh, std::uint64_t most_steps,
     edge_flaws(mesh, edges, most_steps, flaws);
     normal_flaws(mesh, same_position, normals_remedy, flaws);
     return flaws;
+}
+
+void count_leaning_normals(BaseMesh& mesh) {
+    const std::vector<std::uint32_t> same_position = first_at_position(mesh.vertices);
+    constexpr double degrees = 57.29577951308232, least = 5;
+    const auto angle = [&](const glm::dvec3& a, const glm::dvec3& b) {
+        return degrees * std::atan2(safe_length(glm::cross(a, b)), glm::dot(a, b));
+    };
+    std::vector<glm::dvec3> sums(mesh.vertices.size(), glm::dvec3(0));
+    std::vector<double> widest(mesh.vertices.size(), 0);
+    const auto for_each_corner = [&](const auto& use) {
+        for (const auto& t : mesh.triangles) {
+            const glm::dvec3 facing = triangle_normal(mesh.vertices[t[0]].position, mesh.vertices[t[1]].position,
+                                                      mesh.vertices[t[2]].position);
+            for (const std::uint32_t i : t)
+                use(same_position[i], facing);
+        }
+    };
+    for_each_corner([&](std::uint32_t i, const glm::dvec3& facing) { sums[i] += facing; });
+    for_each_corner(
+        [&](std::uint32_t i, const glm::dvec3& facing) { widest[i] = std::max(widest[i], angle(facing, sums[i])); });
+    std::size_t leaning = 0;
+    double most = 0;
+    for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+        const std::uint32_t at = same_position[i];
+        const double lean = angle(mesh.vertices[i].normal, sums[at]);
+        if (sums[at] == glm::dvec3(0) || lean < widest[at] + least || lean > 90)
+            continue;
+        ++leaning;
+        most = std::max(most, lean);
+    }
+    if (leaning > 0)
+        mesh.repairs.push_back(fmt::format(
+            "{} vertices have a normal that is not that of the triangles around them, by up to {:.0f} degrees: "
+            "displacement, N' and light follow it.",
+            leaning, most));
 }
 
 }  // namespace tessera

@@ -31,4 +31,8 @@ SurfaceEdges edges_of_surface(const BaseMesh& mesh, const std::vector<std::uint3
 std::vector<std::string> surface_flaws(BaseMesh& mesh, std::uint64_t most_steps = largest_search,
                                        std::string_view normals_remedy = {});
 
+/// Adds a sentence on vertices whose normal is no mean of the normals of the triangles at their position: it is 5 degrees or
+/// more outside the cone about these. Not for an earlier run's mesh, whose normals are those of a finer surface.
+void count_leaning_normals(BaseMesh& mesh);
+
 }  // namespace tessera

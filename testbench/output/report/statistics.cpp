@@ -285,10 +285,11 @@ std::vector<Figure> collect_statistics(const MachineSetup& setup, const Simulati
 
     FigureGroup queue(all, "triangle_queue");
     queue.add("taken", totals.queued, "triangle", "triangles put in");
-    queue.add("high_water_mark", totals.most_queued, "triangle", "most triangles waiting at a time, in one machine");
+    queue.add("high_water_mark", totals.most_queued, "triangle",
+              std::string("most triangles waiting at a time, in one machine") + one_after_another(setup));
     queue.add("high_water_bytes",
               (totals.most_queued * datapath::stream_widths(setup.registers.formats).triangle + 7) / 8, "byte",
-              "memory that this takes");
+              std::string("memory that this takes") + one_after_another(setup));
 
     FigureGroup lighting(all, "lighting");
     lighting.add("triangles", totals.lit, "triangle", "lit and sent to the rasteriser");

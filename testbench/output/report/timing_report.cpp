@@ -65,6 +65,18 @@ double Bottleneck::bound() const {
     return remaining > 0 ? 1 / remaining : 0;
 }
 
+namespace {
+
+/// The off-chip memory, or a table behind a cache, whose utilisation is that of the channel.
+bool uses_off_chip_channel(const Machine& machine, const Unit& unit) {
+    const std::string cache = std::string(unit.basename()) + "_cache";
+    return &unit == &machine.off_chip_memory ||
+           std::any_of(machine.caches().begin(), machine.caches().end(),
+                       [&](const TableCache* its) { return its->basename() == cache; });
+}
+
+}  // namespace
+
 Bottleneck find_bottleneck(const Machine& machine, std::uint64_t cycles) {
     std::vector<const Unit*> left;
     for (const Unit* unit : machine.units())
@@ -81,6 +93,9 @@ Bottleneck find_bottleneck(const Machine& machine, std::uint64_t cycles) {
     };
     Bottleneck found;
     found.first = take_highest();
+    const auto on_the_channel = [&](const Unit* unit) { return uses_off_chip_channel(machine, *unit); };
+    if (std::any_of(found.first.units.begin(), found.first.units.end(), on_the_channel))
+        left.erase(std::remove_if(left.begin(), left.end(), on_the_channel), left.end());
     found.next = take_highest();
     found.binding = found.first.utilisation >= binding_utilisation;
     return found;
@@ -134,17 +149,12 @@ std::string relieving_key(const Machine& machine, const Unit& unit) {
         table.erase(std::min({table.find("_cache"), table.find("_for_tests"), table.size()}));
         return 2 * all <= most_ports ? "timing." + table + "_ports" : "";
     };
-    if (&unit == &machine.off_chip_memory)
+    if (uses_off_chip_channel(machine, unit))
         return off_chip_key(machine);
-    if (const auto* memory = dynamic_cast<const TableMemory*>(&unit); memory != nullptr) {
-        const std::string cache = std::string(unit.basename()) + "_cache";
-        for (const TableCache* its : machine.caches())
-            if (its->basename() == cache)
-                return off_chip_key(machine);
+    if (const auto* memory = dynamic_cast<const TableMemory*>(&unit); memory != nullptr)
         return ports(&unit == &machine.height_table ? height_table_spec(machine.registers().formats).name
                                                     : std::string(unit.basename()) + "_for_tests",
                      memory->slots_per_cycle());
-    }
     if (dynamic_cast<const TableCache*>(&unit) != nullptr)
         return ports(&unit == machine.height_table_cache.get() ? height_table_spec(machine.registers().formats).name
                                                                : unit.basename(),
@@ -224,9 +234,9 @@ std::string latency_text(const Machine& machine, std::uint64_t cycles, const Bot
     const Unit& longest = longest_stay(machine);
     return fmt::format(
         "none: bound by latency; of the busiest ({}) {:.1f} % of the throughput is used; at most {:.1f} times faster "
-        "with more triangles in flight ({}) or shorter latencies (an item stays {:.1f} cycles in {})",
+        "with more triangles in flight ({}) or shorter latencies (an item stays {:.1f} cycles in {}){}",
         found.first.names(), 100 * found.first.utilisation, found.bound(), held_up, mean_stay(longest),
-        unit_name(longest));
+        unit_name(longest), machine.off_chip_memory.occupied_cycles() > 0 ? ", and as much off-chip traffic" : "");
 }
 
 }  // namespace

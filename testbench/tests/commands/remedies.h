@@ -242,6 +242,8 @@ inline const std::map<std::string, std::vector<Remedy>>& remedies() {
              {"run formats.normal_bits=6 formats.normal_fraction=4", "and formats are narrow: set {}", "run formats.normal_bits=16 formats.normal_fraction=14"},
              {"run tests.normal_threshold=0 mesh.source=lattice mesh.spacing=16 tests.generation_limit=12", "or set check.allowed_flips = {:.1f}", ""},
              {"run tests.normal_threshold=0 mesh.source=lattice mesh.spacing=16 tests.generation_limit=12", "raise the threshold of the test that flips most", "run tests.normal_threshold=0.1 mesh.source=lattice mesh.spacing=16 tests.generation_limit=12"},
+             {"run tests.normal_threshold=0.09 check.allowed_triangles=0 tests.generation_limit=8", "or set check.allowed_triangles = {:.1f}", ""},
+             {"run tests.normal_threshold=0.09 check.allowed_triangles=0 tests.generation_limit=8", "use a finer mesh or other thresholds", "run tests.normal_threshold=0.05 check.allowed_triangles=0 tests.generation_limit=8"},
              {"run map.width=32", "{} = {} (a multiple of {} quads)", ""},
              {"run map.width=32", "{} = {} for a map of {} texels", ""},
              {"pgm 40 40 > a.pgm; run map.file=a.pgm mesh.source=cylinder mesh.columns=30 mesh.rows=30", "{} = {} for a map of {} texels", "run map.file=a.pgm mesh.source=cylinder mesh.columns=40 mesh.rows=40"},

@@ -47,6 +47,23 @@ TEST_CASE("bake: without a size the map has 256 x 256 texels") {
     CHECK(here.names() == std::vector<std::string>{"dome.job.toml", "dome.pgm"});
 }
 
+TEST_CASE("bake: of the base mesh's job nothing is kept that belongs to another map") {
+    const TestFolder here;
+    write_all(here.path() / "base.toml",
+              "mode = \"functional\"\n[mesh]\nsource = \"lattice\"\nspacing = 8\n[map]\nwidth = 65\nheight = 65\n"
+              "range = [0, 300]\nno_data = [0]\naddress_u = \"repeat\"\n");
+    const std::string out = succeed({"bake", example("dome.toml").string(), "--mesh", "base.toml", "--size", "32x32",
+                                     "--output", "dome.exr"},
+                                    here.path())
+                                .out;
+    CHECK_THAT(out, !Contains("no base triangle"));  // the lattice is the new map's
+    const std::string job = read_all(here.path() / "dome.job.toml");
+    for (const char* const key : {"range", "no_data", "width", "height"})
+        CHECK_THAT(job, !Contains(std::string("\n") + key + " = "));
+    CHECK_THAT(job, Contains("address_u = \"repeat\""));
+    CHECK_THAT(succeed({"run", "dome.job.toml"}, here.path()).out, !Contains("note: map.") && !Contains("no-data"));
+}
+
 TEST_CASE("bake: the job fits the domain and finds its files from its own folder") {
     const TestFolder here;
     write_all(here.path() / "wide.toml",
@@ -67,6 +84,10 @@ TEST_CASE("bake: the job fits the domain and finds its files from its own folder
     CHECK_THAT(out, Contains("no base triangle"));
     CHECK_THAT(read_all(here.path() / "out/ball.job.toml"), Contains("file = \"../base/square.obj\""));
     succeed({"run", "out/ball.job.toml"}, here.path());
+    CHECK_THAT(succeed({"bake", "wide.toml", "--output", "wide.png"}, here.path()).out,
+               Contains("the surface is moved by (-5, -0.25)"));
+    CHECK_THAT(succeed({"bake", "wide.toml", "--mesh", "base/job.toml", "--output", "wide.png"}, here.path()).out,
+               Contains("note: [domain] is not used"));
 
     // The map of a patch does not depend on the base mesh.
     succeed({"bake", example("hills.toml").string(), "--output", "plain.pgm"}, here.path());

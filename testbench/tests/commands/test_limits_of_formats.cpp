@@ -98,6 +98,6 @@ TEST_CASE("limits: a saturation that no width prevents is a note, not a warning"
 TEST_CASE("limits: a threshold below its register's step is refused before the work") {
     const TestFolder here;
     refused(run_of({"tests.highlight=true", "tests.highlight_normal_threshold=1e-5"}), here.path(),
-            {"tests.highlight_normal_threshold = 1e-05", "6.103515625e-05", "formats.normal_fraction"});
+            {"tests.highlight_normal_threshold = 1e-05", "6.103515625e-05", "set it at least to that step"});
     CHECK(here.names().empty());
 }

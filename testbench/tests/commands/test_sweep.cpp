@@ -255,6 +255,23 @@ TEST_CASE("sweep: an axis along which no figure changes is named, on the page to
     CHECK_THAT(end.err, !Contains("axis timing.summed_height_table_ports") && !Contains("axis hardware.queue_order"));
 }
 
+TEST_CASE("sweep: a figure of some designs only is found, and an axis on which only the end depends is not idle") {
+    if (!sweeps_run())
+        return;
+    const Checkout checkout;
+    const std::string head =
+        testing::replaced(testing::replaced(small, small.substr(small.find("[[axis]]")), ""),
+                          "figures = [\"timing.cycles\"", "figures = [\"displacement_map.cache_hit_rate\"");
+    const ProgramEnd end =
+        sweep(checkout, head +
+                            "[[axis]]\nkey = \"timing.displacement_map_cache_bytes\"\nvalues = [0, 256]\n"
+                            "[[axis]]\nkey = \"hardware.queue_overflow\"\nvalues = [\"spill\", \"error\"]\n"
+                            "[[axis]]\nkey = \"hardware.queue_capacity\"\nvalues = [0, 2]\n");
+    INFO(end.text());
+    CHECK_THAT(end.err, Contains("6 ok, 2 failed") && !Contains("axis hardware.queue_overflow"));
+    CHECK_THAT(read_all(checkout.root() / "runs/sweeps/small/table.csv"), Contains("displacement_map.cache_hit_rate"));
+}
+
 TEST_CASE("sweep: a run that does not end is a row, and is tried again") {
     if (!sweeps_run())
         return;

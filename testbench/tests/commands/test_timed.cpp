@@ -133,6 +133,27 @@ TEST_CASE("timed run: a size that is rounded is noted with sizes that are not, a
     }
 }
 
+TEST_CASE("timed run: where caches share the off-chip channel, more bandwidth helps no more than the bound says") {
+    const TestFolder here;
+    const auto run = [&](const std::string& bandwidth) {
+        succeed(
+            timed_run("out", unchecked + small +
+                                 Arguments{"timing.summed_height_table_cache_bytes=64",
+                                           "timing.normal_map_cache_bytes=64", "timing.displacement_map_cache_bytes=64",
+                                           "timing.off_chip_latency=0", "timing.off_chip_bandwidth=" + bandwidth}),
+            here.path());
+        return RunFolder(here.path() / "out");
+    };
+    const RunFolder narrow = run("1"), wide = run("64");
+    const double bound = narrow.statistics["timing"]["bottleneck_bound"]["value"].get<double>();
+    const double faster =
+        static_cast<double>(narrow.count("timing", "cycles")) / static_cast<double>(wide.count("timing", "cycles"));
+    CHECK_THAT(narrow.statistics["timing"]["bottleneck_in_words"]["value"].get<std::string>(),
+               Contains("off_chip_memory") && Contains("a larger timing.off_chip_bandwidth helps"));
+    CHECK(faster > 3);
+    CHECK(faster <= bound);
+}
+
 TEST_CASE("a key of timed mode is noted in functional mode, and machines without a base triangle") {
     const TestFolder here;
     const std::string text =
@@ -144,6 +165,7 @@ TEST_CASE("a key of timed mode is noted in functional mode, and machines without
             .out;
     for (const char* const key : {"timing.summed_height_table_ports = 4", "hardware.queue_capacity = 4"})
         CHECK_THAT(text, Contains(std::string("note: ") + key + " has no effect: mode = \"functional\""));
+    CHECK_THAT(text, Contains("triangles waiting, ") && Contains("; one after another: timed mode has the machine's"));
     CHECK_THAT(text, Contains("note: hardware.machines = 3: only 2 work, since the base mesh has 2 triangles"));
 }
 
@@ -178,6 +200,9 @@ TEST_CASE("timed run: a key without effect in the design is noted, and has none"
     without_effect({"mesh.source=sphere"}, "mesh.width", "3.0");
     without_effect({"mesh.source=lattice"}, "mesh.columns", "5");
     without_effect({}, "map.seed", "7");
+    write_all(here.path() / "map.pgm", "P2 4 4 9\n0 9 5 1\n1 2 3 1\n8 2 3 1\n4 2 9 0\n");
+    CHECK_THAT(run({"map.file=map.pgm", "map.heights=fitted"}).first,
+               !Contains("map.heights = \"fitted\" has no effect: map.source"));
     without_effect({"map.source=noise"}, "map.text", "\"other\"");
     without_effect({}, "map.channel", "\"R\"");
     without_effect({}, "frames.first_scale", "0.1");

@@ -192,6 +192,8 @@ TEST_CASE("tune refuses wrong usage and unreachable goals, and writes nothing") 
     CHECK_THAT(tune({"--triangles", "17", "--grid", "4x4"}), Contains("32 triangles") && Contains("(--grid)"));
     CHECK_THAT(tune({"--triangles", "3", "--set", "mesh.source=lattice", "--set", "mesh.spacing=16"}),
                Contains("(mesh.spacing)"));
+    CHECK_THAT(tune({"--triangles", "100", "--set", "map.source=constant"}),
+               Contains("the map has no relief, so that no edge requests a split; use at most 18"));
     CHECK_THAT(tune({"--error", "1e-9"}), Contains("allow at least that") && !Contains("--grid"));
     CHECK_THAT(tune({"--triangles", "3000000"}), Contains("at most"));
     CHECK_THAT(tune({"--triangles", "300000000"}), Contains("limits.triangles"));

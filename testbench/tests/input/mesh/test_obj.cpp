@@ -236,6 +236,23 @@ TEST_CASE("points of the border that rounding separates are joined, and near one
     CHECK_THAT(testing::joined(small.repairs), Contains("1 point(s) of the border lay within"));
 }
 
+TEST_CASE("normals that lean away from their triangles are counted") {
+    const auto square_with = [&](const std::string& normal) {
+        return testing::joined(parse(square + "vn " + normal + "\nf 1/1/2 2/2/2 3/3/2 4/4/2\n").repairs);
+    };
+    CHECK_THAT(square_with("0.5 0 0.866"), Contains("4 vertices have a normal that is not that of the triangles around "
+                                                    "them, by up to 30 degrees"));
+    CHECK_THAT(square_with("0.05 0 1"), !Contains("not that of the triangles"));
+    // Smooth and faceted normals of a fold lie within its triangles' cone.
+    const std::string fold =
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1 0 1\nv 1 1 1\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+        "vn 0 0 1\nvn -1 0 0\nvn -0.7 0 0.7\n";
+    CHECK_THAT(testing::joined(parse(fold + "f 1/1/1 2/2/1 3/3/1 4/4/1\nf 2/1/2 5/2/2 6/3/2 3/4/2\n").repairs),
+               !Contains("not that of the triangles"));
+    CHECK_THAT(testing::joined(parse(fold + "f 1/1/1 2/2/3 3/3/3 4/4/1\nf 2/1/3 5/2/2 6/3/2 3/4/3\n").repairs),
+               !Contains("not that of the triangles"));
+}
+
 TEST_CASE("T-junctions are reported if they are off their edge by rounding") {
     const auto with = [](const char* y) {
         return testing::joined(parse(std::string("v 0 0 0\nv 2 0 0\nv 1 2 0\nv 1 ") + y +
