@@ -132,7 +132,7 @@ TexelSpread measure_texel_spread(const BaseMesh& mesh, const PreparedScene& scen
             continue;
         const glm::dvec3 dp_du = gradient->dp_du * scene.scale, dp_dv = gradient->dp_dv * scene.scale;
         const TexelAxes own = texel_axes(dp_du, dp_dv, scene);
-        const auto [dn_du, dn_dv] = by_texture(mesh, triangle, &BaseVertex::normal);
+        const std::array<glm::dvec3, 2> turn = by_texture(mesh, triangle, &BaseVertex::normal);  // per unit of u, of v
         spread.shear = std::max(spread.shear, degrees * std::atan2(std::abs(own.across), own.up));
         std::array<glm::dvec2, 3> corners;
         for (std::size_t corner = 0; corner < 3; ++corner)
@@ -144,7 +144,7 @@ TexelSpread measure_texel_spread(const BaseMesh& mesh, const PreparedScene& scen
             errors.add(error, gradient->area);
             of_map.add(error, gradient->texture_area);
             const double height = height_at(t, scene);
-            const TexelAxes displaced = texel_axes(dp_du + height * dn_du, dp_dv + height * dn_dv, scene);
+            const TexelAxes displaced = texel_axes(dp_du + height * turn[0], dp_dv + height * turn[1], scene);
             curved.add(degrees_between(right, normal_of(rise, displaced)), gradient->area);
         });
     }

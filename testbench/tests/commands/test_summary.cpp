@@ -56,7 +56,8 @@ TEST_CASE("summary: each count of the machine is in its place") {
     CHECK(value_of(text, "distinct edges") == "11, each tested 3.0 times on average");
     CHECK(value_of(text, "distinct vertices") == "6; 33 computed, 16 of them discarded, and 15 normals transformed");
     // the default design's entry, and one bit for the Highlight Test
-    CHECK(value_of(text, "triangle queue") == "at most 24 triangles waiting, 1573 bits each");
+    CHECK(value_of(text, "triangle queue") ==
+          "at most 24 triangles waiting, 1573 bits each; one after another: timed mode has the machine's");
     CHECK_THAT(value_of(text, "summed height table"), Contains("0 reads, 0.0 per edge"));
     CHECK(value_of(text, "functional mode") == "simulated in 0.50 s, 0.00 million edges a second");
     CHECK_THAT(text, Contains("  note: a remark\n"));

@@ -295,11 +295,12 @@ TEST_CASE("a threshold that its register rounds to 0 is refused with the registe
     expect_refusals(
         {
             {"tests.normal_threshold=1e-5",
-             {"tests.normal_threshold = 1e-05", "6.103515625e-05", "formats.normal_fraction"}},
+             {"tests.normal_threshold = 1e-05", "6.103515625e-05", "set it at least to that step"}},
             {"tests.highlight=true tests.highlight_normal_threshold=6e-5",
              {"tests.highlight_normal_threshold = 6e-05", "6.103515625e-05"}},
             {"tests.view_threshold=0.003", {"tests.view_threshold = 0.003", "0.00390625"}},
-            {"tests.summed_height_threshold=3e-6", {"tests.summed_height_threshold", "formats.displacement_bits"}},
+            {"tests.summed_height_threshold=3e-6",
+             {"tests.summed_height_threshold", "set it to 0, or at least to that step"}},
             {"tests.summed_height_threshold=0.4 tests.summed_height_unit=area formats.displacement_bits=1",
              {"tests.summed_height_threshold = 0.4"}},
             {"tests.normal_threshold=6.103515625e-05", {}},
