@@ -60,18 +60,16 @@ def probe(sweep, planner, store, designs):
             known.update(result["figures"])
             known.update(measured(sweep, result)[0])
 
+    runnable = [design for design in designs if design.key]
     for scene in sweep.scenes:
-        here = [design for design in designs if design.scene == scene and design.key]
-        if not here:
-            continue
-        if not any(store.has(design.key) for design in here):
+        here = [design for design in runnable if design.scene == scene]
+        if here and not any(store.has(design.key) for design in here):
             perform(store, planner.task(here[0]), sweep.longest_run)
         results = [store.read(design.key) for design in here if store.has(design.key)][:100]
         if results:
             seconds[scene] = statistics.mean(result["seconds"] for result in results)
         for result in results:
             look_at(result)
-    runnable = [design for design in designs if design.key]
     for design in with_new_values(runnable, [design for design in runnable if store.has(design.key)]):
         if known.issuperset(sweep.wanted):
             break

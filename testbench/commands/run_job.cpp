@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "testbench/check/conformance/narrow_formats.h"
+#include "testbench/check/conformance/difference_advice.h"
 #include "testbench/check/conformance/scoreboard.h"
 #include "testbench/check/conformance/texel_borders.h"
 #include "testbench/check/transport/conservation.h"
@@ -265,8 +265,8 @@ Ending run_once(const Job& asked, const Command& command, const std::string& nam
     }
     if ((checks.conformance && checks.conformance->flips_percent() > checks.allowed_flips) ||
         (checks.end_to_end && !checks.end_to_end->passed()))
-        warn(narrow_formats_warning(job, checks.conformance ? checks.conformance->flips_percent() : 0,
-                                    checks.end_to_end && !checks.end_to_end->passed() ? &*checks.end_to_end : nullptr));
+        warn(difference_advice(job, checks.conformance ? checks.conformance->flips_percent() : 0,
+                               checks.end_to_end && !checks.end_to_end->passed() ? &*checks.end_to_end : nullptr));
     if (setup.bound_asked) {
         progress.show("measuring the bound", 0.8);
         const Totals totals(simulation);

@@ -306,6 +306,10 @@ std::string_view Key::leaf() const {
     return whole.substr(whole.rfind('.') + 1);
 }
 
+bool Key::serves(Mode mode) const {
+    return description.rfind(mode == Mode::timed ? "Functional mode" : "Timed mode", 0) != 0;
+}
+
 const std::vector<KeyTable>& job_tables() {
     static const std::vector<KeyTable> tables = declare_keys();
     return tables;

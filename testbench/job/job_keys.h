@@ -44,6 +44,7 @@ struct Key {
     std::function<void(Job&, const JobValue&)> set;  ///< for values without complaint(); see set_value
 
     std::string_view leaf() const;  ///< name without its table
+    bool serves(Mode mode) const;   ///< unless its description begins with the other mode
 };
 
 /// A table of a job file; the one without a name has the top-level keys.

@@ -79,10 +79,16 @@ std::string width_remark(const SizedTable& table) {
                                table.name, width, entry, cycles, cycles == 1 ? "cycle" : "cycles", same);
 }
 
-/// Keys that have no effect, by name or, up to '_' or '.', by the beginning of several; and why.
+/// Keys that have no effect, by name or as `beginning*`, and why.
 struct Idle {
     std::vector<std::string> keys;
     std::string because;
+
+    bool has(const std::string& key) const {
+        return std::any_of(keys.begin(), keys.end(), [&](const std::string& its) {
+            return its.back() == '*' ? key.compare(0, its.size() - 1, its, 0, its.size() - 1) == 0 : key == its;
+        });
+    }
 };
 
 /// Of the edge tests: a key belongs to the test that its name begins with, a threshold to that which declares it.
@@ -90,13 +96,13 @@ std::vector<Idle> idle_test_keys(const Job& job, const datapath::Formats& format
     std::vector<Idle> idle;
     for (const Key& key : find_table("tests")->keys)
         if (const JobValue on = key.get(job); std::holds_alternative<bool>(on) && !std::get<bool>(on))
-            idle.push_back({{key.name + '_'}, key.name + " = false"});
+            idle.push_back({{key.name + "_*"}, key.name + " = false"});
     const datapath::HeightTestFunctions& chosen = datapath::functions_of(formats.height_test);
     const std::string because = fmt::format("hardware.height_test = \"{}\"", chosen.name);
     for (std::size_t k = 0; k < height_test_hosts().size(); ++k) {
         const datapath::HeightTestFunctions& test = *datapath::height_tests()[k];
         if (&test != &chosen)
-            idle.push_back({{fmt::format("tests.{}_", test.name)}, because});
+            idle.push_back({{fmt::format("tests.{}_*", test.name)}, because});
         const auto registers = test.thresholds(formats);
         for (const HeightThresholdKey& key : height_test_hosts()[k]->thresholds()) {
             const bool compared = std::any_of(registers.begin(), registers.end(), [&](const auto& its) {
@@ -134,7 +140,7 @@ std::vector<Idle> idle_keys(const Job& job, const MachineSetup& setup) {
     for (Idle& keys : idle_source_keys(job))
         idle.push_back(std::move(keys));
     if (!job.output.vcd)
-        idle.push_back({{"output.trace_"}, "output.vcd = false"});
+        idle.push_back({{"output.trace_*"}, "output.vcd = false"});
     if (job.frames.count == 1)
         idle.push_back({{"frames.first_scale"}, "frames.count = 1"});
     const auto unless = [&](bool used, std::vector<std::string> keys, std::string because) {
@@ -143,18 +149,17 @@ std::vector<Idle> idle_keys(const Job& job, const MachineSetup& setup) {
     };
     unless(setup.registers.formats.height_test == datapath::HeightTest::rank,
            {"formats.rank_bits", "formats.bound_bits"}, "hardware.height_test is not \"rank\"");
-    if (job.mode != Mode::timed) {
-        idle.push_back({{"timing."}, "mode = \"functional\""});
-        for (const Key& key : find_table("hardware")->keys)
-            if (key.description.rfind("Timed mode", 0) == 0)
-                idle.push_back({{key.name}, "mode = \"functional\""});
+    const std::string mode = fmt::format("mode = {}", toml_value(find_key("mode")->get(job)));
+    for (const Key& key : find_table("hardware")->keys)
+        unless(key.serves(job.mode), {key.name}, mode);
+    unless(job.mode == Mode::timed, {"timing.*"}, mode);
+    if (job.mode != Mode::timed)
         return idle;
-    }
     const datapath::HeightTest height_test = setup.registers.formats.height_test;
     const Design& design = setup.design;
-    unless(functions_of(height_test).rectangles, {"timing.summed_height_table_"},
+    unless(functions_of(height_test).rectangles, {"timing.summed_height_table_*"},
            fmt::format("hardware.height_test = \"{}\"", name_of(height_test)));
-    unless(!functions_of(height_test).rectangles, {"timing.height_table_"},
+    unless(!functions_of(height_test).rectangles, {"timing.height_table_*"},
            fmt::format("hardware.height_test = \"{}\"", name_of(height_test)));
     bool off_chip = design.queue.capacity > 0 && design.queue.overflow == QueueOverflow::spill;
     for (const SizedTable& table : sized_tables(setup)) {
@@ -166,13 +171,13 @@ std::vector<Idle> idle_keys(const Job& job, const MachineSetup& setup) {
                 "timing." + table.name + "_cache_fills"},
                "timing." + table.name + "_cache_bytes = 0");
     }
-    unless(off_chip, {"timing.off_chip_"}, "nothing is off chip: no table has a cache, and the queue does not spill");
+    unless(off_chip, {"timing.off_chip_*"}, "nothing is off chip: no table has a cache, and the queue does not spill");
     unless(design.queue.capacity > 0, {"hardware.queue_overflow", "hardware.off_chip_triangles"},
            "hardware.queue_capacity = 0");
     unless(design.test_order == TestOrder::cheap_first, {"timing.edges_in_sequence"},
            "hardware.test_order = \"parallel\"");
     unless(setup.registers.tests.highlight_test, {"timing.highlight_test_latency"}, "tests.highlight = false");
-    unless(job.timing.stalls.per_mille > 0, {"timing.stalls_"}, "timing.stalls_per_mille = 0");
+    unless(job.timing.stalls.per_mille > 0, {"timing.stalls_*"}, "timing.stalls_per_mille = 0");
     return idle;
 }
 
@@ -192,12 +197,7 @@ std::vector<std::string> design_remarks(const Job& job, const MachineSetup& setu
     for (const char* const name : {"mesh", "map", "frames", "tests", "formats", "hardware", "timing", "output"})
         for (const Key& key : find_table(name)->keys) {
             const std::string value = toml_value(key.get(job)), setting = fmt::format("{} = {}", key.name, value);
-            const auto why = std::find_if(idle.begin(), idle.end(), [&](const Idle& it) {
-                return std::any_of(it.keys.begin(), it.keys.end(), [&](const std::string& its) {
-                    const bool begins = its.back() == '_' || its.back() == '.';
-                    return begins ? key.name.rfind(its, 0) == 0 : key.name == its;
-                });
-            });
+            const auto why = std::find_if(idle.begin(), idle.end(), [&](const Idle& it) { return it.has(key.name); });
             const bool said = std::any_of(setup.remarks.begin(), setup.remarks.end(),
                                           [&](const std::string& remark) { return remark.rfind(setting, 0) == 0; });
             if (why != idle.end() && value != toml_value(key.get(preset)) && !said)

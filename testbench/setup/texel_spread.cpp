@@ -12,8 +12,6 @@ namespace tessera {
 
 namespace {
 
-constexpr double degrees = 57.29577951308232;
-
 /// Parts of the surface by the error of N' there.
 class Errors {
   public:
@@ -62,10 +60,6 @@ TexelAxes texel_axes(const glm::dvec3& dp_du, const glm::dvec3& dp_dv, const Pre
 glm::dvec3 normal_of(const glm::dvec2& rise, const TexelAxes& axes) {
     const double along = rise.x / axes.u;
     return {-along, -(rise.y - along * axes.across) / axes.up, 1};
-}
-
-double degrees_between(const glm::dvec3& a, const glm::dvec3& b) {
-    return degrees * std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
 }
 
 /// Calls use(x, y) with the texel at a texture coordinate in texels.
@@ -133,7 +127,7 @@ TexelSpread measure_texel_spread(const BaseMesh& mesh, const PreparedScene& scen
         const glm::dvec3 dp_du = gradient->dp_du * scene.scale, dp_dv = gradient->dp_dv * scene.scale;
         const TexelAxes own = texel_axes(dp_du, dp_dv, scene);
         const std::array<glm::dvec3, 2> turn = by_texture(mesh, triangle, &BaseVertex::normal);  // per unit of u, of v
-        spread.shear = std::max(spread.shear, degrees * std::atan2(std::abs(own.across), own.up));
+        spread.shear = std::max(spread.shear, glm::degrees(std::atan2(std::abs(own.across), own.up)));
         std::array<glm::dvec2, 3> corners;
         for (std::size_t corner = 0; corner < 3; ++corner)
             corners[corner] = mesh.vertices[triangle[corner]].texture * texels;

@@ -27,14 +27,13 @@ inline std::int64_t to_register(const ThresholdToRegister& threshold) {
     if (fixed > threshold.limit)
         throw InputError(fmt::format("{} = {} does not fit its register; the largest is {}", threshold.key,
                                      threshold.value, threshold.limit / threshold.scale));
-    const double bits = std::ceil(-std::log2(threshold.value * threshold.scale));
-    if (threshold.used && threshold.value > 0 && fixed < 1)
+    if (threshold.used && threshold.value > 0 && fixed < 1) {
+        const double bits = std::ceil(-std::log2(threshold.value * threshold.scale));
         throw InputError(fmt::format(
-            "{} = {} is less than one step of its register, {}, and would be 0 there: {}"
-            "{}",
-            threshold.key, threshold.value, 1 / threshold.scale,
-            threshold.zero ? "set it to 0, or at least to that step" : "set it at least to that step",
+            "{} = {} is less than one step of its register, {}, and would be 0 there: set it {}at least to that step{}",
+            threshold.key, threshold.value, 1 / threshold.scale, threshold.zero ? "to 0, or " : "",
             bits <= threshold.more_bits ? fmt::format(", or raise {} by {}", threshold.format_key, bits) : ""));
+    }
     return static_cast<std::int64_t>(fixed);
 }
 

@@ -10,6 +10,7 @@
 #include <iterator>
 #include <limits>
 #include <set>
+#include <utility>
 
 namespace tessera {
 
@@ -247,75 +248,81 @@ std::optional<Suspect> outermost_apart(const Between& rest, bool lowest, float o
     return {};
 }
 
+/// Values that often mark missing data, as are their negatives; the last is -9999 in 16 bits without sign.
+constexpr std::array markers{999.0, 9999.0, 32767.0, 32768.0, 65535.0, 99999.0, 55537.0};
+
 bool marks_missing_data(double value, const HeightMap& map) {
     constexpr double lowest_height = -999, beyond_heights = 1e30;
-    constexpr std::array markers{999.0, 9999.0, 32767.0, 32768.0, 65535.0, 99999.0};
     return value <= lowest_height || value >= beyond_heights || (map.source_units > 1 && value == map.source_units) ||
            std::find(markers.begin(), markers.end(), value) != markers.end();
 }
 
 /// Texels that hold one value, compared with the texels beside them.
 struct Patch {
+    float value;
+    bool outermost;  ///< the lowest or the highest value
     std::int64_t count = 0, beside = 0;
     double differences = 0;  ///< from those beside them
 
     double mean_difference() const { return beside > 0 ? differences / static_cast<double>(beside) : 0; }
+
+    bool stands_out(double span) const {
+        constexpr std::int64_t few = 4, several = 64;
+        constexpr double far = 0.1, far_of_several = 0.02;  // of all heights' span
+        return count >= (outermost ? several : few) &&
+               mean_difference() >= span * (outermost || count < several ? far : far_of_several);
+    }
 };
 
-Patch patch_of(const HeightMap& map, float value) {
-    Patch patch;
-    const auto look = [&](int x, int y) {
-        if (x < 0 || y < 0 || x >= map.width || y >= map.height || map.at(x, y) == value)
-            return;
-        ++patch.beside;
-        patch.differences += std::abs(static_cast<double>(map.at(x, y)) - static_cast<double>(value));
-    };
+/// Counts the texels of each patch, given in the order of their values, and compares them.
+void look_beside(const HeightMap& map, std::vector<Patch>& patches) {
     for (int y = 0; y < map.height; ++y)
         for (int x = 0; x < map.width; ++x) {
-            if (map.at(x, y) != value)
+            const float value = map.at(x, y);
+            const auto patch = std::lower_bound(patches.begin(), patches.end(), value,
+                                                [](const Patch& a, float b) { return a.value < b; });
+            if (patch == patches.end() || patch->value != value)
                 continue;
-            ++patch.count;
-            look(x - 1, y);
-            look(x + 1, y);
-            look(x, y - 1);
-            look(x, y + 1);
+            ++patch->count;
+            for (const auto& [column, row] : {std::pair{x - 1, y}, {x + 1, y}, {x, y - 1}, {x, y + 1}})
+                if (column >= 0 && row >= 0 && column < map.width && row < map.height && map.at(column, row) != value) {
+                    ++patch->beside;
+                    patch->differences +=
+                        std::abs(static_cast<double>(map.at(column, row)) - static_cast<double>(value));
+                }
         }
-    return patch;
 }
 
 /// The remark on values among the heights, or little apart from them, whose texels stand out from those beside them: one
 /// that often marks missing data, or the lowest or the highest.
 std::string remark_on_patches(const HeightMap& map, const Between& rest, std::vector<std::string>& values) {
-    constexpr std::array markers{999.0,   9999.0,  32767.0, 32768.0,
-                                 65535.0, 99999.0, 55537.0};  // the last: -9999 in 16 bits
-    constexpr std::int64_t few = 4, several = 64;
-    constexpr double far = 0.1, far_of_several = 0.02, far_outermost = 0.25,
-                     gap_outermost = 0.05;  // of all heights' span
+    constexpr double apart = 0.05;  // of the heights' span: from the outermost value to the next
     constexpr std::size_t many = 256;
     if (rest.some(many).size() < many)
         return {};
     const auto lows = rest.outermost<2>(true), highs = rest.outermost<2>(false);
     const double span = static_cast<double>(highs[0].value) - static_cast<double>(lows[0].value);
-    std::vector<std::string> texts;
-    const auto look = [&](float value, bool outermost) {
-        const Patch patch = patch_of(map, value);
-        const double difference = patch.mean_difference() / span;
-        if (outermost ? patch.count < several || difference < far_outermost
-                      : patch.count < few || difference < (patch.count < several ? far : far_of_several))
-            return;
-        values.push_back(in_source(value, map));
-        texts.push_back(
-            fmt::format("{} texels hold exactly {}, and those beside them differ from it by {:.6g} on average",
-                        patch.count, values.back(), patch.mean_difference() * map.source_units));
-    };
+    std::vector<Patch> patches;
     for (const auto& [outermost, next] : {lows, highs})
-        if (std::abs(static_cast<double>(next.value) - static_cast<double>(outermost.value)) >= gap_outermost * span)
-            look(outermost.value, true);
+        if (std::abs(static_cast<double>(next.value) - static_cast<double>(outermost.value)) >= apart * span)
+            patches.push_back({outermost.value, true});
     for (const double marker : markers)
         for (const double value : {marker, -marker})
             if (const float inside = in_precision(value / map.source_units, map.significant_bits);
                 inside > lows[0].value && inside < highs[0].value)
-                look(inside, false);
+                patches.push_back({inside, false});
+    if (patches.empty())
+        return {};
+    std::sort(patches.begin(), patches.end(), [](const Patch& a, const Patch& b) { return a.value < b.value; });
+    look_beside(map, patches);
+    std::vector<std::string> texts;
+    for (const Patch& patch : patches)
+        if (patch.stands_out(span)) {
+            values.push_back(in_source(patch.value, map));
+            texts.push_back(
+                fmt::format("{} texels hold exactly {}, and those beside them differ from it by {:.6g} on average",
+                            patch.count, values.back(), patch.mean_difference() * map.source_units));
+        }
     return fmt::format("{}", fmt::join(texts, "; "));
 }
 

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "testbench/input/mesh/mesh_limits.h"
-#include "testbench/input/mesh/surface_flaws.h"
 #include "testbench/setup/mesh/equal_groups.h"
 #include "testbench/setup/mesh/triangle_geometry.h"
 
@@ -74,11 +73,11 @@ class NearPoints {
 };
 
 /// Of each point, the length of its shortest edge.
-std::vector<double> shortest_edges(const BaseMesh& mesh, const std::vector<std::uint32_t>& same_position) {
+std::vector<double> shortest_edges(const BaseMesh& mesh, const std::vector<std::uint32_t>& points) {
     std::vector<double> shortest(mesh.vertices.size(), std::numeric_limits<double>::infinity());
     for (const auto& t : mesh.triangles)
         for (std::size_t k = 0; k < 3; ++k) {
-            const std::uint32_t a = same_position[t[k]], b = same_position[t[(k + 1) % 3]];
+            const std::uint32_t a = points[t[k]], b = points[t[(k + 1) % 3]];
             const double length = safe_length(mesh.vertices[a].position - mesh.vertices[b].position);
             shortest[a] = std::min(shortest[a], length);
             shortest[b] = std::min(shortest[b], length);
@@ -88,18 +87,17 @@ std::vector<double> shortest_edges(const BaseMesh& mesh, const std::vector<std::
 
 }  // namespace
 
-void join_border_points(BaseMesh& mesh) {
-    const std::vector<std::uint32_t> same_position = first_at_position(mesh.vertices);
+void join_border_points(BaseMesh& mesh, Surface& surface) {
     std::vector<std::uint32_t> border;
-    for (const auto& edge : edges_of_surface(mesh, same_position).border)
+    for (const auto& edge : surface.border)
         border.insert(border.end(), edge.begin(), edge.end());
     std::sort(border.begin(), border.end());
     border.erase(std::unique(border.begin(), border.end()), border.end());
     const auto [low, high] = bounds_of(mesh.vertices);
     const glm::dvec3 sides = high - low;
     const double size = std::max({sides.x, sides.y, sides.z});
-    const std::vector<double> shortest = shortest_edges(mesh, same_position);
-    std::vector<std::uint32_t> joined = same_position;
+    const std::vector<double> shortest = shortest_edges(mesh, surface.points);
+    std::vector<std::uint32_t> joined = surface.points;
     std::size_t joins = 0, near = 0;
     NearPoints kept(near_within * size);
     std::size_t searched = 0;
@@ -120,12 +118,14 @@ void join_border_points(BaseMesh& mesh) {
             std::min(shortest[point], shortest[other]) >= shortest_edge * near_within * size)
             ++near;
     }
-    for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
-        mesh.vertices[i].position = mesh.vertices[joined[same_position[i]]].position;
-    if (joins > 0)
+    if (joins > 0) {
+        for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
+            mesh.vertices[i].position = mesh.vertices[joined[surface.points[i]]].position;
+        surface = surface_of(mesh);
         mesh.repairs.push_back(
             fmt::format("{} point(s) of the border lay within {:.3g} of another, and were joined to it.", joins,
                         joined_within * size));
+    }
     if (near > 0)
         mesh.repairs.push_back(fmt::format(
             "{} point(s) of the border lie within {:.3g} of another: the displaced surface opens there. If they "

@@ -53,14 +53,16 @@ class Assembler {
         make_vertices();
         triangles_ = {};
         text_.corners = {};
-        join_border_points(mesh_);
+        Surface surface = surface_of(mesh_);
+        join_border_points(mesh_, surface);
+        mesh_.winding_changes = surface.opposed;
         complete_smooth_normals(mesh_);
         constexpr const char* smooth_normals =
             "Export the mesh with smooth normals, or its faces without normals, as in `f 1/1 2/2 3/3`: smooth ones are "
             "then calculated.";
-        for (std::string& flaw : surface_flaws(mesh_, largest_search, smooth_normals))
+        for (std::string& flaw : surface_flaws(mesh_, surface, smooth_normals))
             mesh_.repairs.push_back(std::move(flaw));
-        count_leaning_normals(mesh_);
+        count_leaning_normals(mesh_, surface);
         complete_tangent_frames(mesh_);
         measure_texture_scale(mesh_);
         return std::move(mesh_);

@@ -115,7 +115,9 @@ BaseMesh read_run_mesh(const std::filesystem::path& folder) {
     constexpr const char* smooth_normals =
         "Set output.obj = true in that run, and use its mesh.obj without normals, as in `f 1/1 2/2 3/3`: smooth ones are then "
         "calculated.";
-    for (std::string& flaw : surface_flaws(mesh, largest_search, smooth_normals))
+    const Surface surface = surface_of(mesh);
+    mesh.winding_changes = surface.opposed;
+    for (std::string& flaw : surface_flaws(mesh, surface, smooth_normals))
         mesh.repairs.push_back(std::move(flaw));
     complete_tangent_frames(mesh);
     measure_texture_scale(mesh);

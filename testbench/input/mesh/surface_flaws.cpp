@@ -124,24 +124,24 @@ void find_t_junctions(const BaseMesh& mesh, const std::vector<std::array<std::ui
     }
 }
 
-void edge_flaws(const BaseMesh& mesh, const SurfaceEdges& edges, std::uint64_t most_steps,
+void edge_flaws(const BaseMesh& mesh, const Surface& surface, std::uint64_t most_steps,
                 std::vector<std::string>& flaws) {
-    if (edges.crowded > 0)
-        flaws.push_back(fmt::format("{} edge(s) belong to more than two triangles.", edges.crowded));
-    if (mesh.winding_changes > 0)
+    if (surface.crowded > 0)
+        flaws.push_back(fmt::format("{} edge(s) belong to more than two triangles.", surface.crowded));
+    if (surface.opposed > 0)
         flaws.push_back(fmt::format(
             "The winding changes across {} edge(s): neighbours face opposite ways. Turn the triangles so that all face "
             "outside; where this is not possible, separate them.",
-            mesh.winding_changes));
-    find_t_junctions(mesh, edges.border, most_steps, flaws);
+            surface.opposed));
+    find_t_junctions(mesh, surface.border, most_steps, flaws);
 }
 
-void normal_flaws(const BaseMesh& mesh, const std::vector<std::uint32_t>& same_position,
-                  std::string_view normals_remedy, std::vector<std::string>& flaws) {
+void normal_flaws(const BaseMesh& mesh, const std::vector<std::uint32_t>& points, std::string_view normals_remedy,
+                  std::vector<std::string>& flaws) {
     std::vector<char> several(mesh.vertices.size(), 0);
     for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
-        if (glm::distance(mesh.vertices[i].normal, mesh.vertices[same_position[i]].normal) > same_normal)
-            several[same_position[i]] = 1;
+        if (glm::distance(mesh.vertices[i].normal, mesh.vertices[points[i]].normal) > same_normal)
+            several[points[i]] = 1;
     if (const auto count = std::count(several.begin(), several.end(), 1); count > 0) {
         flaws.push_back(fmt::format("{} point(s) have more than one normal: the displaced surface opens there.{}{}",
                                     count, normals_remedy.empty() ? "" : " ", normals_remedy));
@@ -159,52 +159,47 @@ void normal_flaws(const BaseMesh& mesh, const std::vector<std::uint32_t>& same_p
 
 }  // namespace
 
-SurfaceEdges edges_of_surface(const BaseMesh& mesh, const std::vector<std::uint32_t>& same_position) {
+Surface surface_of(const BaseMesh& mesh) {
+    Surface surface;
+    surface.points = first_at_position(mesh.vertices);
     // one number per edge and triangle: the lower vertex, the higher, the direction; sorting brings them
     // together
     std::vector<std::uint64_t> uses;
     uses.reserve(mesh.triangles.size() * 3);
     for (const auto& t : mesh.triangles) {
         for (std::size_t k = 0; k < 3; ++k) {
-            const std::uint64_t a = same_position[t[k]], b = same_position[t[(k + 1) % 3]];
+            const std::uint64_t a = surface.points[t[k]], b = surface.points[t[(k + 1) % 3]];
             uses.push_back(std::min(a, b) << 33 | std::max(a, b) << 1 | (a < b ? 0u : 1u));
         }
     }
     std::sort(uses.begin(), uses.end());
-    SurfaceEdges edges;
     for (std::size_t i = 0; i < uses.size();) {
         std::size_t end = i;
         while (end < uses.size() && uses[end] >> 1 == uses[i] >> 1)
             ++end;
         if (end - i == 1) {
-            edges.border.push_back(
+            surface.border.push_back(
                 {static_cast<std::uint32_t>(uses[i] >> 33), static_cast<std::uint32_t>(uses[i] >> 1 & UINT32_MAX)});
         } else if (end - i > 2) {
-            ++edges.crowded;
+            ++surface.crowded;
         } else {
-            edges.opposed += uses[i] == uses[i + 1] ? 1u : 0u;
+            surface.opposed += uses[i] == uses[i + 1] ? 1u : 0u;
         }
         i = end;
     }
-    return edges;
+    return surface;
 }
 
-std::vector<std::string> surface_flaws(BaseMesh& mesh, std::uint64_t most_steps, std::string_view normals_remedy) {
-    const std::vector<std::uint32_t> same_position = first_at_position(mesh.vertices);
+std::vector<std::string> surface_flaws(const BaseMesh& mesh, const Surface& surface, std::string_view normals_remedy,
+                                       std::uint64_t most_steps) {
     std::vector<std::string> flaws;
-    const SurfaceEdges edges = edges_of_surface(mesh, same_position);
-    mesh.winding_changes = edges.opposed;
-    edge_flaws(mesh, edges, most_steps, flaws);
-    normal_flaws(mesh, same_position, normals_remedy, flaws);
+    edge_flaws(mesh, surface, most_steps, flaws);
+    normal_flaws(mesh, surface.points, normals_remedy, flaws);
     return flaws;
 }
 
-void count_leaning_normals(BaseMesh& mesh) {
-    const std::vector<std::uint32_t> same_position = first_at_position(mesh.vertices);
-    constexpr double degrees = 57.29577951308232, least = 5;
-    const auto angle = [&](const glm::dvec3& a, const glm::dvec3& b) {
-        return degrees * std::atan2(safe_length(glm::cross(a, b)), glm::dot(a, b));
-    };
+void count_leaning_normals(BaseMesh& mesh, const Surface& surface) {
+    constexpr double least = 5;  // degrees
     std::vector<glm::dvec3> sums(mesh.vertices.size(), glm::dvec3(0));
     std::vector<double> widest(mesh.vertices.size(), 0);
     const auto for_each_corner = [&](const auto& use) {
@@ -212,17 +207,18 @@ void count_leaning_normals(BaseMesh& mesh) {
             const glm::dvec3 facing = triangle_normal(mesh.vertices[t[0]].position, mesh.vertices[t[1]].position,
                                                       mesh.vertices[t[2]].position);
             for (const std::uint32_t i : t)
-                use(same_position[i], facing);
+                use(surface.points[i], facing);
         }
     };
     for_each_corner([&](std::uint32_t i, const glm::dvec3& facing) { sums[i] += facing; });
-    for_each_corner(
-        [&](std::uint32_t i, const glm::dvec3& facing) { widest[i] = std::max(widest[i], angle(facing, sums[i])); });
+    for_each_corner([&](std::uint32_t i, const glm::dvec3& facing) {
+        widest[i] = std::max(widest[i], degrees_between(facing, sums[i]));
+    });
     std::size_t leaning = 0;
     double most = 0;
     for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-        const std::uint32_t at = same_position[i];
-        const double lean = angle(mesh.vertices[i].normal, sums[at]);
+        const std::uint32_t at = surface.points[i];
+        const double lean = degrees_between(mesh.vertices[i].normal, sums[at]);
         if (sums[at] == glm::dvec3(0) || lean < widest[at] + least || lean > 90)
             continue;
         ++leaning;

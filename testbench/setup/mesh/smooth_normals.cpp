@@ -2,12 +2,17 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "testbench/setup/mesh/equal_groups.h"
 #include "testbench/setup/mesh/triangle_geometry.h"
 
 namespace tessera {
 
 void complete_smooth_normals(BaseMesh& mesh) {
+    const auto has_none = [](const BaseVertex& vertex) { return vertex.normal == glm::dvec3(0); };
+    if (std::none_of(mesh.vertices.begin(), mesh.vertices.end(), has_none))
+        return;
     constexpr double cancelled = 1e-9;  // relative to the sum of angles; below it, rounding
     const std::vector<std::uint32_t> group = first_at_position(mesh.vertices);
 
@@ -34,7 +39,7 @@ void complete_smooth_normals(BaseMesh& mesh) {
     std::size_t cancelling = 0;
     std::vector<char> counted(mesh.vertices.size(), 0);
     for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-        if (mesh.vertices[i].normal != glm::dvec3(0))
+        if (!has_none(mesh.vertices[i]))
             continue;
         const Sum& sum = sums[group[i]];
         const bool cancels = !(safe_length(sum.direction) > cancelled * sum.angle);

@@ -37,6 +37,10 @@ inline glm::dvec3 triangle_normal(const glm::dvec3& a, const glm::dvec3& b, cons
     return unit_or_zero(twice_area);
 }
 
+inline double degrees_between(const glm::dvec3& a, const glm::dvec3& b) {
+    return glm::degrees(std::atan2(safe_length(glm::cross(a, b)), glm::dot(a, b)));
+}
+
 /// Area in square model units.
 inline double triangle_area(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
     return safe_length(glm::cross(b - a, c - a)) / 2;

@@ -207,6 +207,7 @@ TEST_CASE("timed run: a key without effect in the design is noted, and has none"
     without_effect({}, "map.channel", "\"R\"");
     without_effect({}, "frames.first_scale", "0.1");
     without_effect({}, "output.trace_from", "5");
+    without_effect({}, "hardware.direct_memory", "false");
     without_effect({}, "tests.highlight_angle", "60.0");
     without_effect({"tests.view=false"}, "tests.view_threshold", "9.0");
     without_effect({"mode=functional", "hardware.height_test=curvature"}, "tests.summed_height_unit", "\"area\"");

@@ -216,6 +216,11 @@ TEST_CASE("a value within the heights that often marks missing data is told if i
     CHECK(advised(hint(plain)) == "-12500");
     std::fill_n(plain.values.begin() + from, 100, -11000.0F);
     CHECK(hint(plain) == "");
+    INFO("0 below heights of 300 to 2000");
+    for (float& value : slope.values)
+        value = 300 + (value + 10900) * 1700 / 19000;
+    CHECK(advised(hint_with(0, 100)) == "0");
+    CHECK(hint_with(0, 5) == "");
 }
 
 TEST_CASE("beside many values, which lie close together, a narrower gap is enough") {

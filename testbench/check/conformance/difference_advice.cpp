@@ -1,4 +1,4 @@
-#include "testbench/check/conformance/narrow_formats.h"
+#include "testbench/check/conformance/difference_advice.h"
 
 #include <fmt/format.h>
 
@@ -12,9 +12,12 @@
 
 namespace tessera {
 
-std::string narrow_formats_warning(const Job& job, double flips_percent, const EndToEndResult* golden_run) {
+namespace {
+
+/// Settings of the default for each format that is narrower. Texture coordinates and heights are rounded in golden's run,
+/// too.
+std::vector<std::string> wider_formats(const Job& job) {
     std::vector<std::string> wider;
-    // Texture coordinates and heights are rounded in golden's run, too.
     for (const char* name : {"formats.position_bits", "formats.position_fraction", "formats.normal_bits",
                              "formats.normal_fraction", "formats.screen_bits", "formats.screen_fraction"}) {
         const Key& key = *find_key(name);
@@ -22,22 +25,32 @@ std::string narrow_formats_warning(const Job& job, double flips_percent, const E
         if (std::get<std::int64_t>(key.get(job)) < usual)
             wider.push_back(fmt::format("{} = {}", name, usual));
     }
-    if (wider.empty() && flips_percent > job.check.allowed_flips)
+    return wider;
+}
+
+double rounded_up(double percent) {
+    return std::ceil(10 * percent) / 10;
+}
+
+}  // namespace
+
+std::string difference_advice(const Job& job, double flips_percent, const EndToEndResult* golden_run) {
+    if (const std::vector<std::string> wider = wider_formats(job); !wider.empty())
+        return fmt::format(
+            "the mesh or its decisions differ from the golden model's, whose positions and normals are not rounded, and "
+            "formats are narrow: set {}",
+            fmt::join(wider, " and "));
+    if (flips_percent > job.check.allowed_flips)
         return fmt::format(
             "rounding decides more edges than check.allowed_flips = {} allows: raise the threshold of the test that flips "
             "most (report.txt), or set check.allowed_flips = {:.1f}",
-            job.check.allowed_flips, std::ceil(10 * flips_percent) / 10);
-    if (wider.empty() && golden_run != nullptr && !golden_run->bound_hit && !golden_run->empty())
+            job.check.allowed_flips, rounded_up(flips_percent));
+    if (golden_run != nullptr && !golden_run->bound_hit && !golden_run->empty())
         return fmt::format(
             "rounding decides some edges otherwise than in golden's own run, which is much in a mesh of {} triangles: use a "
             "finer mesh or other thresholds, or set check.allowed_triangles = {:.1f}",
-            golden_run->hardware_triangles, std::ceil(10 * golden_run->least_allowed()) / 10);
-    if (wider.empty())
-        return {};
-    return fmt::format(
-        "the mesh or its decisions differ from the golden model's, whose positions and normals are not rounded, and "
-        "formats are narrow: set {}",
-        fmt::join(wider, " and "));
+            golden_run->hardware_triangles, rounded_up(golden_run->least_allowed()));
+    return {};
 }
 
 }  // namespace tessera
