@@ -4,7 +4,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from program import QUIET, ContentHash, Refused, Task, effective_job, run_commands
+from program import QUIET, ContentHash, Refused, Task, effective_job, files_of, run_commands
 
 
 @dataclass
@@ -27,11 +27,11 @@ class Planner:
         self.hash = ContentHash(program)
 
     def check_keys(self):
-        """Every key of the sweep file is one of the program's."""
-        sweep = self.sweep
+        """Every key of the sweep file is one of the program's, and every file that it names exists."""
+        sweep, jobs = self.sweep, {}
         for scene, job in sweep.scenes.items():
             try:
-                known = effective_job(self.program, job, {})
+                known = jobs[scene] = effective_job(self.program, job, {})
             except Refused as refused:
                 raise sweep.error(refused, sweep.line_of(scene)) from None
         taken = {}
@@ -44,9 +44,21 @@ class Planner:
             if key in taken and taken[key] != sweep.line_of("[set]"):
                 raise sweep.error(f"`{key}` is also on another axis, line {taken[key]}", place)
             taken[key] = line
+        for scene, keys in jobs.items():
+            self._check_files({key: value for key, value in keys.items() if key not in taken}, sweep.scenes[scene].parent,
+                              lambda _, scene=scene: sweep.line_of(scene))
+        for settings, line in [(sweep.settings, sweep.line_of("[set]")),
+                               *((point.settings, axis.line) for axis in sweep.axes for point in axis.points)]:
+            self._check_files(settings, sweep.path.parent, lambda path, line=line: sweep.line_of(path.name, line))
         for constraint in sweep.constraints:
             for name in constraint.names - set(known):
                 raise sweep.error(f"unknown key `{name}` in a constraint", sweep.line_of(constraint.text))
+
+    def _check_files(self, keys, folder, line_of):
+        for key, paths in files_of(keys, folder).items():
+            for path in paths:
+                if not path.is_file():
+                    raise self.sweep.error(f"`{key}`: there is no file {path}", line_of(path))
 
     def content(self):
         """What the sweep depends on besides the program: its text, its jobs, and the files that they and the axes name."""

@@ -77,14 +77,23 @@ def stamp(path):
     return [status.st_mtime_ns, status.st_size]
 
 
+def paths_of(keys):
+    """{key: path} of the keys that name a file or folder."""
+    return {key: keys[key] for key in ("mesh.file", "map.file") if isinstance(keys.get(key), str) and keys[key]}
+
+
+def located(settings, folder):
+    """The settings with paths from this folder made absolute, since runs have other working directories."""
+    return {**settings, **{key: str(folder.resolve() / name) for key, name in paths_of(settings).items()
+                           if not name.startswith("data:")}}
+
+
 def files_of(keys, folder):
     """{key: files} that a run reads besides its job; `folder`: of the job. Of an earlier run it reads two."""
     files = {}
-    for key in ("mesh.file", "map.file"):
-        if keys.get(key):
-            name = keys[key]
-            path = DATA / name.removeprefix("data:") if name.startswith("data:") else folder.resolve() / name
-            files[key] = [path / "mesh.ply", path / "job.toml"] if path.is_dir() else [path]
+    for key, name in paths_of(keys).items():
+        path = DATA / name.removeprefix("data:") if name.startswith("data:") else folder.resolve() / name
+        files[key] = [path / "mesh.ply", path / "job.toml"] if path.is_dir() else [path]
     return files
 
 
@@ -144,7 +153,8 @@ def run(task, folder, longest):
     """The result of a task: exit code, reason of a failure, figures, timing table, seconds of processor time, and the
     output of a task without figures.
 
-    Raises OSError if a command did not end by itself or a file it read has changed, subprocess.TimeoutExpired.
+    Raises OSError if a command did not end by itself or a file it reads is missing or has changed,
+    subprocess.TimeoutExpired.
     """
     begin = resource.getrusage(resource.RUSAGE_CHILDREN)
     for command in task.commands:
@@ -156,6 +166,8 @@ def run(task, folder, longest):
         if done.returncode > 0:
             break
     for path, before in task.inputs.items():
+        if before is None:
+            raise OSError(f"there is no file {path}")
         if stamp(path) != before:
             raise OSError(f"{path} was changed since this began; start it again")
     end = resource.getrusage(resource.RUSAGE_CHILDREN)

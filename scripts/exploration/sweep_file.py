@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from expression import Expression
+from program import located
 
 JOBS = Path(__file__).resolve().parent.parent.parent / "testbench/examples/jobs"
 TOP_KEYS = {"job", "scenes", "set", "axis", "constraints", "figures", "derived", "minimise", "maximise", "search",
@@ -150,7 +151,7 @@ def read_sweep(path):
         sweep.scenes[Path(name).stem] = scene_path(name, path.parent)
         if sweep.scenes[Path(name).stem] is None:
             raise sweep.error(f"there is no job `{name}`", sweep.line_of(name))
-    sweep.settings = content.get("set", {})
+    sweep.settings = located(content.get("set", {}), path.parent)
     for table, line in zip(content.get("axis", []), axis_lines(text)):
         try:
             axis = axis_of(table, line)
@@ -160,6 +161,8 @@ def read_sweep(path):
             raise sweep.error("this axis has no values: the product is empty", line)
         if len(axis.points) > LONGEST_AXIS:
             raise sweep.error(f"this axis has more than {LONGEST_AXIS} values", line)
+        for point in axis.points:
+            point.settings = located(point.settings, path.parent)
         sweep.axes.append(axis)
     if not sweep.axes:
         raise sweep.error("there is no [[axis]]")

@@ -232,6 +232,58 @@ TEST_CASE("sweep: a run during which an input changes has no result") {
                Contains(changed + " was changed since this began; start it again"));
 }
 
+TEST_CASE("sweep: a path in a sweep file is from its folder, and a missing file is refused and leaves no result") {
+    if (!sweeps_run())
+        return;
+    const Checkout checkout;
+    const fs::path root = checkout.root(), results = root / "runs/sweeps/results";
+    const std::string map = "P2\n2 2\n255\n0 90 0 0\n";
+    fs::create_directories(root / "maps");
+    write_all(root / "maps/a.pgm", map);
+    write_all(root / "maps/b.pgm", testing::replaced(map, "90", "91"));
+    write_all(root / "a.pgm", testing::replaced(map, "90", "92"));
+    write_all(root / "maps/one.toml", "mode = \"functional\"\n");
+    const auto run = [&](const std::string& text, const std::string& options = {}) {
+        write_all(root / "maps/s.toml", "job = \"one.toml\"\nfigures = [\"mesh.triangles\"]\n" + text);
+        return checkout.run("scripts/sweep maps/s.toml " + options);
+    };
+    const std::string work = "[[axis]]\nkey = \"check.work\"\nvalues = [true]\n",
+                      set = "[set]\n\"map.file\" = \"a.pgm\"\n" + work,
+                      axis = "[[axis]]\nkey = \"map.file\"\nvalues = [\"a.pgm\", \"b.pgm\"]\n";
+    const ProgramEnd end = run(set);
+    INFO(end.text());
+    CHECK(end.exit_code == 0);
+    INFO("the same file by its absolute path is the same run, and the axis adds one");
+    CHECK_THAT(run(testing::replaced(set, "\"a.pgm", "\"" + (root / "maps/a.pgm").string()), "--check").err,
+               Contains("; 0 runs to do"));
+    const ProgramEnd both = run(axis);
+    INFO(both.text());
+    CHECK(both.exit_code == 0);
+    CHECK_THAT(both.err, Contains("2 designs; 1 runs to do") && Contains("2 ok"));
+    CHECK_THAT(read_all(root / "runs/sweeps/s/table.csv"), Contains("0,one,a.pgm,"));
+    CHECK(results_in(results) == 2);
+
+    INFO("missing");
+    const auto is_refused = [&](const std::string& text, const std::string& message) {
+        const ProgramEnd refused = run(text, "--check");
+        INFO(refused.text());
+        CHECK(refused.exit_code == 2);
+        CHECK_THAT(refused.err, Contains(message + "`map.file`: there is no file "));
+        CHECK(results_in(results) == 2);
+    };
+    is_refused(testing::replaced(set, "a.pgm", "c.pgm"), "s.toml:4: ");
+    is_refused(testing::replaced(axis, "b.pgm", "c.pgm"), "s.toml:5: ");
+    write_all(root / "maps/one.toml", "mode = \"functional\"\n[map]\nfile = \"c.pgm\"\n");
+    is_refused(work, "s.toml:1: ");
+    INFO("a missing file that only some designs read is found by their runs");
+    const ProgramEnd later = run("[[axis]]\nname = \"map\"\n[axis.points]\nown = {}\nb = {\"map.file\" = \"b.pgm\"}\n");
+    INFO(later.text());
+    CHECK(later.exit_code == 1);
+    CHECK_THAT(later.err, Contains("1 ok, 1 no result"));
+    CHECK_THAT(read_all(root / "runs/sweeps/s/table.csv"), Contains("there is no file ") && Contains("maps/c.pgm"));
+    CHECK(results_in(results) == 2);
+}
+
 TEST_CASE("sweep: an axis along which no figure changes is named, on the page too") {
     if (!sweeps_run())
         return;
