@@ -94,7 +94,8 @@ std::string BoundResult::text() const {
     const std::string worst = fmt::format("{}, worst at texel ({}, {})", found, worst_texel.x, worst_texel.y);
     switch (verdict) {
         case Verdict::nothing:
-            return in_picture ? "no texel centre of the mesh is in the picture: set camera.target = \"auto\""
+            return in_picture ? "no texel centre of the mesh is in the picture: set camera.eye = \"auto\" and "
+                                "camera.target = \"auto\""
                               : "no texel centre is on the mesh";
         case Verdict::holds: return (promised ? "holds: " : "kept here, but not guaranteed (see the note): ") + found;
         case Verdict::not_promised: return "exceeded, and not guaranteed (see the note): " + worst;

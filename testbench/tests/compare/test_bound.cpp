@@ -214,8 +214,8 @@ TEST_CASE("bound: with nothing of the mesh in the picture the check fails") {
     REQUIRE(away.result);
     CHECK(away.result->verdict == BoundResult::Verdict::nothing);
     CHECK_FALSE(away.result->passed());
-    CHECK_THAT(away.result->text(), Contains("set camera.target = \"auto\""));
-    const BoundRun back(in_the_picture + "camera.eye=[0,-3,1] camera.target=auto");
+    CHECK_THAT(away.result->text(), Contains("set camera.eye = \"auto\" and camera.target = \"auto\""));
+    const BoundRun back(in_the_picture + "camera.eye=auto camera.target=auto");
     REQUIRE(back.result);
     CHECK(back.result->points > 0);
     CHECK(back.result->passed());
