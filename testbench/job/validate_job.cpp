@@ -111,15 +111,10 @@ void check_light(const Job::Hardware& hardware, Faults& faults) {
 }
 
 void check_rank_view(const Job& job, Faults& faults) {
-    if (job.tests.rank_view == RankView::none)
-        return;
-    faults.unless(
-        job.hardware.height_test == HeightTest::rank,
-        "`tests.rank_view` = \"{}\", but `hardware.height_test` = \"{}\" has no ranks: set hardware.height_test = \"rank\"",
-        name_of(job.tests.rank_view), name_of(job.hardware.height_test));
-    faults.unless(job.hardware.test_order == TestOrder::cheap_first,
-                  "`tests.rank_view` = \"{}\": the View Test computes the distances that the Rank Test needs: set "
-                  "hardware.test_order = \"cheap_first\"",
+    faults.unless(job.tests.rank_view == RankView::none || (job.hardware.height_test == HeightTest::rank &&
+                                                            job.hardware.test_order == TestOrder::cheap_first),
+                  "`tests.rank_view` = \"{}\" needs ranks, and distances that the View Test computes first: set "
+                  "hardware.height_test = \"rank\" and hardware.test_order = \"cheap_first\"",
                   name_of(job.tests.rank_view));
 }
 

@@ -71,8 +71,8 @@ void check_camera(const CameraSettings& camera, const FormatSettings& formats, F
     const std::int64_t most = integer_bits < 0 ? 0 : std::int64_t{1} << integer_bits;
     const std::int64_t needed =
         datapath::bits_for(static_cast<std::uint64_t>(std::max(camera.viewport_width, camera.viewport_height))) + 1;
-    const std::int64_t fraction =
-        std::min<std::int64_t>(formats.screen_fraction, datapath::FormatLimits::screen_bits.most - needed);
+    const std::int64_t fraction = std::min(std::max(formats.screen_fraction, FormatSettings{}.screen_fraction),
+                                           std::int64_t{datapath::FormatLimits::screen_bits.most} - needed);
     faults.unless(camera.viewport_width <= most && camera.viewport_height <= most,
                   "`camera.viewport_width` = {} by `camera.viewport_height` = {}, but `formats.screen_bits` = {} with "
                   "`formats.screen_fraction` = {} reaches only {} pixels: set formats.screen_fraction = {} and "
@@ -85,16 +85,19 @@ void check_formats(const FormatSettings& formats, const TestSettings& tests, Fau
     faults.unless(formats.rank_bits > 0 || formats.bound_bits > 0,
                   "`formats.rank_bits` = 0 and `formats.bound_bits` = 0: a Rank Table has ranks, bounds or both: set "
                   "formats.rank_bits = 8, or formats.bound_bits = 8");
+    // Not the narrowest that are allowed: with those a run may differ from golden's by more than its checks allow.
+    const FormatSettings usual;
     faults.unless(formats.position_fraction < formats.position_bits,
                   "`formats.position_fraction` = {} must be less than `formats.position_bits` = {}: set "
-                  "formats.position_fraction = {}, or formats.position_bits = {}",
-                  formats.position_fraction, formats.position_bits, formats.position_bits - 1,
-                  formats.position_fraction + 1);
+                  "formats.position_bits = {}",
+                  formats.position_fraction, formats.position_bits,
+                  std::max(usual.position_bits, formats.position_fraction + 1));
     faults.unless(formats.normal_bits - formats.normal_fraction >= 2,
                   "`formats.normal_fraction` = {} leaves {} of `formats.normal_bits` = {} for sign and "
-                  "integer, and 1.0 takes 2: set formats.normal_fraction = {}, or formats.normal_bits = {}",
+                  "integer, and 1.0 takes 2: set formats.normal_fraction = {} and formats.normal_bits = {}",
                   formats.normal_fraction, formats.normal_bits - formats.normal_fraction, formats.normal_bits,
-                  formats.normal_bits - 2, formats.normal_fraction + 2);
+                  std::max(usual.normal_fraction, formats.normal_fraction),
+                  std::max(usual.normal_bits, formats.normal_fraction + 2));
     faults.unless(formats.tex_coord_fraction <= formats.texture_fraction,
                   "`formats.tex_coord_fraction` = {1} must be at most `formats.texture_fraction` = {0}: set "
                   "formats.tex_coord_fraction = {0}, or formats.texture_fraction = {1}",

@@ -43,7 +43,8 @@ std::string cause_of(const DisplacementSettings& settings, const HeightMap& map,
                                     : "",
                        halvings == 0 || bits > datapath::FormatLimits::position_bits.most
                            ? ""
-                           : fmt::format(", or set formats.position_bits = {}", bits));
+                           : fmt::format(", or set formats.position_bits = {}",
+                                         std::max<std::int64_t>(bits, FormatSettings{}.position_bits)));
 }
 
 }  // namespace

@@ -59,6 +59,11 @@ void make_height_table(const TestSettings& tests, PreparedScene& scene) {
     host_of(registers.formats.height_test).make_table(tests, base, scene);
 }
 
+/// The default, if that is enough: the run's checks compare with positions that are not rounded.
+double usual_or_more(double position_bits) {
+    return std::max(position_bits, static_cast<double>(FormatSettings{}.position_bits));
+}
+
 /// A sentence if the surface's relief is mostly the rounding of its positions; else empty.
 std::string relief_remark(const HeightMap& map, const DisplacementSettings& settings, double scale,
                           const datapath::Format& position) {
@@ -75,7 +80,7 @@ std::string relief_remark(const HeightMap& map, const DisplacementSettings& sett
         "format, to which they are rounded: {}",
         std::min(low, high), std::max(low, high), steps,
         bits <= datapath::FormatLimits::position_bits.most
-            ? fmt::format("set formats.position_bits = {}", bits)
+            ? fmt::format("set formats.position_bits = {}", usual_or_more(bits))
             : "raise displacement.scale, or bring displacement.bias nearer to 0");
 }
 
@@ -100,7 +105,7 @@ std::string thin_base_remark(const BaseMesh& mesh, double scale, const datapath:
         "changes their shape: {}",
         thin, mesh.triangles.size(), fewest_steps, thinnest,
         bits <= datapath::FormatLimits::position_bits.most
-            ? fmt::format("set formats.position_bits = {}", bits)
+            ? fmt::format("set formats.position_bits = {}", usual_or_more(bits))
             : "use thicker triangles, or a mesh whose parts are nearer to one another");
 }
 

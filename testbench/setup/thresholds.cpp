@@ -15,7 +15,8 @@ std::uint32_t to_normal_register(const char* key, double value, bool used, const
     return static_cast<std::uint32_t>(
         to_register({key, value, used, std::ldexp(1.0, formats.normal.fraction),
                      static_cast<double>(2 * formats.normal.highest + 1), "formats.normal_fraction",
-                     datapath::FormatLimits::normal_fraction.most - formats.normal.fraction, false}));
+                     datapath::FormatLimits::normal_fraction.most - formats.normal.fraction, false,
+                     static_cast<int>(FormatSettings{}.normal_fraction) - formats.normal.fraction}));
 }
 
 }  // namespace

@@ -214,7 +214,7 @@ TEST_CASE("invalid frames are refused before the first, and existing files stay"
     // Frame 0 would fit; the displacement of the last leaves too few steps for the mesh.
     CHECK_THAT(frames_refused(
                    frames(3, {"displacement.scale=1e6", "formats.position_bits=16", "formats.position_fraction=0"})),
-               Contains("displacement.scale = 1e+06 spans") && Contains("set formats.position_bits = 26"));
+               Contains("displacement.scale = 1e+06 spans") && Contains("set formats.position_bits = 32"));
     CHECK_THAT(frames_refused(frames(3, {"map.source=file", "map.file=absent.pgm"})), Contains("absent.pgm"));
     CHECK_THAT(frames_refused(frames(0)), Contains("frames.count") && Contains("1 .. 1000"));
     CHECK_THAT(frames_refused({"frames.cuont=3"}), Contains("did you mean `frames.count`?"));

@@ -39,7 +39,9 @@ without() {
 }
 # run KEY=VALUE ...: the small job with these keys
 run() { local s a=(); for s in "$@"; do a+=(--set "$s"); done; tessera run small.toml "${a[@]}"; }
-# the same, without the checks
+# fine KEY=VALUE ...: the same, but with a fine mesh
+fine() { run tests.generation_limit=15 tests.view_threshold=10 "$@"; }
+# the small job without the checks
 unchecked() { run check.golden=false check.end_to_end=false check.invariants=false check.work=false check.reads=false "$@"; }
 # square SCALE X Y Z: an OBJ file, a square of this size at this place
 square() {
