@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <regex>
+#include <string>
 
 #include "testbench/commands/progress.h"
 #include "testbench/commands/run_files.h"
@@ -51,6 +53,14 @@ Output choose_output(const RenderRequest& request) {
     return output;
 }
 
+/// A message about camera keys, with render's options in their place.
+std::string in_options(const std::string& message) {
+    static const std::regex key(R"(`?camera\.(eye|target|up|field_of_view)`?(?: =)?)"),
+        point(R"(\[(\S+), (\S+), (\S+)\])");
+    const std::string text = std::regex_replace(std::regex_replace(message, key, "--$1"), point, "$1 $2 $3");
+    return std::regex_replace(text, std::regex("--field_of_view"), "--field-of-view");
+}
+
 View choose_camera(const RenderRequest& request, Job job) {
     if (!request.eye && !request.target && !request.up && !request.field_of_view)
         return make_view(job.camera);
@@ -61,8 +71,9 @@ View choose_camera(const RenderRequest& request, Job job) {
     try {
         validate(job);
     } catch (const InputError& error) {
-        throw InputError(fmt::format(
-            "invalid camera from --eye, --target, --up and --field-of-view (default: the run's): {}", error.what()));
+        throw InputError(
+            fmt::format("invalid camera from --eye, --target, --up and --field-of-view (default: the run's): {}",
+                        in_options(error.what())));
     }
     return make_view(job.camera);
 }

@@ -2,6 +2,9 @@
 
 #include <catch2/catch.hpp>
 #include <cstdint>
+#include <regex>
+#include <string>
+#include <vector>
 
 #include "testbench/tests/support/program_runner.h"
 
@@ -145,15 +148,16 @@ TEST_CASE("render: hostile arguments are refused in one line") {
         refused({"render", "run", "--size=" + size}, here, {"--size", "64", "16384"});
     refused({"render", "run", "--size", "16384x16384"}, here, {"--size", "33554432"});
     refused({"render", "run", "--size", "16384"}, here, {"--size", "33554432"});
-    refused({"render", "run", "--eye", "1", "1", "1", "--target", "1", "1", "1"}, here, {"--eye", "camera.target"});
+    refused({"render", "run", "--eye", "1", "1", "1", "--target", "1", "1", "1"}, here,
+            {"--eye 1.0 1.0 1.0 and --target 1.0 1.0 1.0 are the same point: set --target "});
     refused({"render", "run", "--eye", "0", "0", "3", "--target", "0", "0", "0", "--up", "0", "0", "-2"}, here,
-            {"--up", "parallel"});
-    refused({"render", "run", "--up", "0", "0", "0"}, here, {"--up", "no direction"});
-    refused({"render", "run", "--eye", "nan", "0", "0"}, here, {"--eye", "camera.eye"});
+            {"--up 0.0 0.0 -2.0 is parallel", "set --up "});
+    refused({"render", "run", "--up", "0", "0", "0"}, here, {"--up", "no direction: set one, such as 0 0 1"});
+    refused({"render", "run", "--eye", "nan", "0", "0"}, here, {"--eye nan"});
     refused({"render", "run", "--eye", "1", "2"}, here, {"--eye"});
     refused({"render", "run", "--eye", "1", "2", "east"}, here, {"--eye"});
-    refused({"render", "run", "--field-of-view", "180"}, here, {"camera.field_of_view", "180"});
-    refused({"render", "run", "--field-of-view", "0"}, here, {"camera.field_of_view"});
+    refused({"render", "run", "--field-of-view", "180"}, here, {"--field-of-view 180"});
+    refused({"render", "run", "--field-of-view", "0"}, here, {"--field-of-view 0"});
     refused({"render", "run", "--zoom", "0.5", "1.5", "2"}, here, {"--zoom", "1.5"});
     refused({"render", "run", "--zoom", "0.5", "0.5", "0"}, here, {"--zoom", "10000"});
     refused({"render", "run", "--zoom", "0.5", "0.5", "nan"}, here, {"--zoom"});
@@ -165,6 +169,21 @@ TEST_CASE("render: hostile arguments are refused in one line") {
     refused({"render", "run", "--view", "test,wireframe", "--error-scale", "0.5"}, here, {"--view error"});
     refused({"render", "run", "--view", "shadow"}, here, {"shadow", "shaded"});
     refused({"render", "run", "--view", ""}, here, {"--view"});
+}
+
+TEST_CASE("render: the camera that a refusal names is drawn") {
+    const TestFolder here;
+    make_run(here.path());
+    const auto [camera, option] = GENERATE(table<std::vector<std::string>, std::string>(
+        {{{"--eye", "0", "0", "0.125"}, "--target"}, {{"--eye", "0", "0", "5"}, "--up"}}));
+    std::vector<std::string> arguments{"render", "run", "--size", "64"};
+    arguments.insert(arguments.end(), camera.begin(), camera.end());
+    const ProgramEnd end = run_tessera(arguments, here.path());
+    INFO(end.text());
+    std::smatch named;
+    REQUIRE(std::regex_search(end.err, named, std::regex("set " + option + R"( (\S+) (\S+) (\S+)\n)")));
+    arguments.insert(arguments.end(), {option, named[1], named[2], named[3]});
+    CHECK(run_tessera(arguments, here.path()).exit_code == 0);
 }
 
 TEST_CASE("render: folders that are not runs and invalid outputs are refused") {
