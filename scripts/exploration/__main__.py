@@ -11,7 +11,7 @@ from plan import Planner
 from run_job import perform
 from store import Store
 from sweep_file import SweepError, read_sweep
-from table import idle_axes, make_table, measured, write_csv, write_sqlite
+from table import make_table, measured, remarks, write_csv, write_sqlite
 
 
 def options_from(arguments):
@@ -129,8 +129,8 @@ def report(options, sweep, designs, store):
               ("ok", "failed", "refused", "no result")}
     print(", ".join(f"{count} {status}" for status, count in counts.items() if count)
           + (f"; {sum(row.front for row in table.rows)} on the front" if sweep.objectives else ""), file=sys.stderr)
-    for axis in idle_axes(table):
-        print(f"axis {axis} changed no figure", file=sys.stderr)
+    for remark in remarks(table):
+        print(remark, file=sys.stderr)
     write_page(table, options.output / "index.html")
     print(options.output / "index.html")
     if counts["failed"] and not counts["ok"]:

@@ -9,7 +9,7 @@ import plotly.offline
 
 from program import QUIET, set_options
 from sweep_file import JOBS
-from table import idle_axes
+from table import remarks
 
 HERE = Path(__file__).resolve().parent
 MOST_TIMING_TABLES = 2000  # 4 kB each; with more runs only designs on a front have one
@@ -45,7 +45,7 @@ def write_page(table, path):
     ok = sum(row.status == "ok" for row in table.rows)
     summary = f"{len(rows)} runs, {len(rows) - ok} of them without figures; {sum(row.front for row in table.rows)} on the front of " \
               + (", ".join(f"least {name}" if sign > 0 else f"most {name}" for name, sign in sweep.objectives.items()) or "nothing")
-    summary += "".join(f"; axis {axis} changed no figure" for axis in idle_axes(table))
+    summary += "".join(f"; {remark}" for remark in remarks(table))
     content = {"columns": columns, "rows": rows, "scenes": list(sweep.scenes), "objectives": sweep.objectives, "summary": summary}
     parts = {"title": html.escape(sweep.name), "style": (HERE / "page.css").read_text(encoding="utf-8"),
              "data": json_text(content), "plotly": plotly.offline.get_plotlyjs().replace("</script", "<\\/script"),

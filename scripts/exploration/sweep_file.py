@@ -61,9 +61,13 @@ class Sweep:
         return list(dict.fromkeys([*self.figures, *self.derived, *self.objectives]))
 
     @property
+    def read(self):
+        """Figures that the table has or calculates from."""
+        return {*self.wanted, *(name for each in self.derived.values() for name in each.expression.names)}
+
+    @property
     def measures_error(self):
-        read = {name for each in self.derived.values() for name in each.expression.names}
-        return any(name.startswith("error.") for name in (*self.wanted, *read))
+        return any(name.startswith("error.") for name in self.read)
 
     def line_of(self, words, first=1):
         """The first line from `first` that contains the words; `first` if none does."""

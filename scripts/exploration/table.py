@@ -22,6 +22,7 @@ class Table:
     sweep: object
     units: dict
     rows: list = field(default_factory=list)
+    queues: set = field(default_factory=set)  # whether there are designs whose queue's memory is counted, and others
 
     @property
     def axes(self):
@@ -106,6 +107,14 @@ def idle_axes(table):
     return idle
 
 
+def remarks(table):
+    """What a reader of the table may miss."""
+    found = [f"axis {axis} changed no figure" for axis in idle_axes(table)]
+    if len(table.queues) > 1 and table.sweep.read & {"area.total_memory_bits", "area.triangle_queue_memory_bits"}:
+        found.append("the area does not count unbounded queues: compare it among designs with bounded ones only")
+    return found
+
+
 def make_table(sweep, program, designs, store):
     table = Table(sweep, key_units(program))
     for design in designs:
@@ -118,6 +127,8 @@ def make_table(sweep, program, designs, store):
             figures, units = measured(sweep, result)
             table.units.update(units)
             failed = result["exit_code"] != 0
+            if not failed and "area.triangle_queue_memory_bits" in result["figures"]:
+                table.queues.add(result["figures"]["area.triangle_queue_memory_bits"][0] > 0)
             table.rows.append(Row(
                 design, "failed" if failed else "ok", f"exit code {result['exit_code']}: {result['reason']}" if failed else "",
                 figures, timing=result["timing"],

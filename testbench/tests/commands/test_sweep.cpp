@@ -304,7 +304,8 @@ TEST_CASE("sweep: an axis along which no figure changes is named, on the page to
         CHECK_THAT(end.err, Contains("axis " + std::string(name) + " changed no figure"));
         CHECK_THAT(page, Contains("axis " + std::string(name) + " changed no figure"));
     }
-    CHECK_THAT(end.err, !Contains("axis timing.summed_height_table_ports") && !Contains("axis hardware.queue_order"));
+    CHECK_THAT(end.err, !Contains("axis timing.summed_height_table_ports") && !Contains("axis hardware.queue_order") &&
+                            !Contains("unbounded queues"));
 }
 
 TEST_CASE("sweep: a figure of some designs only is found, and an axis on which only the end depends is not idle") {
@@ -322,6 +323,11 @@ TEST_CASE("sweep: a figure of some designs only is found, and an axis on which o
     INFO(end.text());
     CHECK_THAT(end.err, Contains("6 ok, 2 failed") && !Contains("axis hardware.queue_overflow"));
     CHECK_THAT(read_all(checkout.root() / "runs/sweeps/small/table.csv"), Contains("displacement_map.cache_hit_rate"));
+    const std::string uncounted = "the area does not count unbounded queues";
+    CHECK_THAT(end.err, Contains(uncounted));
+    CHECK_THAT(read_all(checkout.root() / "runs/sweeps/small/index.html"), Contains(uncounted));
+    CHECK_THAT(checkout.run("sed -i '/^minimise/d;/^area/d' small.toml; scripts/sweep small.toml --report").err,
+               !Contains(uncounted));
 }
 
 TEST_CASE("sweep: a run that does not end is a row, and is tried again") {
