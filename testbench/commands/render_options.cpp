@@ -117,6 +117,11 @@ RenderRequest RenderOptions::request() const {
         if (!(line_width_ >= thinnest_line && line_width_ <= widest_line))
             throw InputError(
                 fmt::format("--line-width {}: must be from {} to {} pixels", line_width_, thinnest_line, widest_line));
+        if (std::none_of(request.views.begin(), request.views.end(),
+                         [](PictureView view) { return style_of(view).wireframe; }))
+            throw InputError(
+                fmt::format("--line-width {}: the views asked for draw no lines; add --view wireframe, or leave it out",
+                            line_width_));
         picture.line_width = line_width_;
     }
     if (error_scale_given_->count() > 0) {

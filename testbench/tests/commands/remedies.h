@@ -360,6 +360,7 @@ inline const std::map<std::string, std::vector<Remedy>>& remedies() {
              {"run > a.txt; tessera render out --output ''", "name a file or a folder, or leave it out", "tessera render out --size 64"},
              {"run > a.txt; tessera render out --line-width 1e9", "must be from {} to {} pixels", "tessera render out --size 64 --line-width $2"},
              {"run > a.txt; tessera render out --view error --error-scale 0", "must be above 0, and at most {} model units", "tessera render out --size 64 --view error --error-scale $1"},
+             {"run > a.txt; tessera render out --view shaded --line-width 2", "add --view wireframe, or leave it out", "tessera render out --size 64 --view shaded --line-width 2 --view wireframe"},
              {"run > a.txt; tessera render out --error-scale 1", "add --view error, or leave it out", "tessera render out --size 64 --error-scale 1 --view error"},
              {"run > a.txt; tessera render out --error-scale 1", "or leave it out", "tessera render out --size 64"},
              {"run > a.txt; tessera compare out/mesh.ply", "name the run folder that contains it", "tessera compare out"},

@@ -164,6 +164,8 @@ TEST_CASE("render: hostile arguments are refused in one line") {
     refused({"render", "run", "--zoom", "0.5", "0.5"}, here, {"--zoom"});
     refused({"render", "run", "--line-width", "0"}, here, {"--line-width", "0.1", "50"});
     refused({"render", "run", "--line-width", "nan"}, here, {"--line-width"});
+    refused({"render", "run", "--view", "shaded,error", "--line-width", "3"}, here,
+            {"--line-width 3", "draw no lines"});
     refused({"render", "run", "--error-scale", "0"}, here, {"--error-scale"});
     refused({"render", "run", "--error-scale", "0.5"}, here, {"--error-scale 0.5", "--view error"});
     refused({"render", "run", "--view", "test,wireframe", "--error-scale", "0.5"}, here, {"--view error"});
