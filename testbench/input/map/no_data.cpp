@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <iterator>
 #include <limits>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -248,8 +249,8 @@ std::optional<Suspect> outermost_apart(const Between& rest, bool lowest, float o
     return {};
 }
 
-/// Values that often mark missing data, as are their negatives; the last is -9999 in 16 bits without sign.
-constexpr std::array markers{999.0, 9999.0, 32767.0, 32768.0, 65535.0, 99999.0, 55537.0};
+/// Values that often mark missing data, as are their negatives; the last two are -9999 in 16 bits without sign.
+constexpr std::array markers{999.0, 9999.0, 32767.0, 32768.0, 65535.0, 99999.0, 55537.0, 22769.0};
 
 bool marks_missing_data(double value, const HeightMap& map) {
     constexpr double lowest_height = -999, beyond_heights = 1e30;
@@ -257,72 +258,189 @@ bool marks_missing_data(double value, const HeightMap& map) {
            std::find(markers.begin(), markers.end(), value) != markers.end();
 }
 
+/// When texels that hold one value stand out from those beside them.
+struct Rule {
+    std::int64_t fewest;       ///< texels
+    double far;                ///< mean difference from those beside them, by the heights' span
+    double times;              ///< and by the mean difference elsewhere, which noise has, too
+    bool may_be_floor = true;  ///< may hold most texels
+    double all_round = 0;      ///< part of those beside them that differ so far
+};
+constexpr Rule rare{4, 0.1, 3}, frequent{64, 0.1, 3}, frequent_marker{64, 0.02, 3}, inner_zero{64, 0.1, 3, false},
+    inner_value{64, 0.1, 8, false, 0.75};
+
+/// Values, and each one's rules.
+using Candidates = std::map<float, std::vector<const Rule*>>;
+
 /// Texels that hold one value, compared with the texels beside them.
 struct Patch {
     float value;
-    bool outermost;  ///< the lowest or the highest value
-    std::int64_t count = 0, beside = 0;
+    std::vector<const Rule*> rules;
+    std::int64_t count = 0, beside = 0, far = 0;
     double differences = 0;  ///< from those beside them
 
     double mean_difference() const { return beside > 0 ? differences / static_cast<double>(beside) : 0; }
-
-    bool stands_out(double span) const {
-        constexpr std::int64_t few = 4, several = 64;
-        constexpr double far = 0.1, far_of_several = 0.02;  // of all heights' span
-        return count >= (outermost ? several : few) &&
-               mean_difference() >= span * (outermost || count < several ? far : far_of_several);
-    }
 };
 
-/// Counts the texels of each patch, given in the order of their values, and compares them.
-void look_beside(const HeightMap& map, std::vector<Patch>& patches) {
-    for (int y = 0; y < map.height; ++y)
-        for (int x = 0; x < map.width; ++x) {
-            const float value = map.at(x, y);
-            const auto patch = std::lower_bound(patches.begin(), patches.end(), value,
-                                                [](const Patch& a, float b) { return a.value < b; });
-            if (patch == patches.end() || patch->value != value)
-                continue;
-            ++patch->count;
-            for (const auto& [column, row] : {std::pair{x - 1, y}, {x + 1, y}, {x, y - 1}, {x, y + 1}})
-                if (column >= 0 && row >= 0 && column < map.width && row < map.height && map.at(column, row) != value) {
-                    ++patch->beside;
-                    patch->differences +=
-                        std::abs(static_cast<double>(map.at(column, row)) - static_cast<double>(value));
-                }
+/// The texels that hold heights, compared with those beside them.
+class Neighbours {
+  public:
+    Neighbours(const HeightMap& map, const Between& heights) : map_(map) {
+        missing_.reserve(map.values.size());
+        for (const float value : map.values)
+            missing_.push_back(!heights.has(value));
+        for (const HeightMap::Replaced& replaced : map.replaced)
+            missing_[replaced.texel] = true;
+    }
+
+    /// Values that differ by `step` or more from at least `fewest` texels beside them; none if such steps are common.
+    std::vector<float> at_steps(double step, std::size_t fewest) const {
+        constexpr std::size_t common = 2;  // texels by steps
+        std::vector<float> values, found;
+        for (std::size_t k = 0; k < map_.values.size() && values.size() <= map_.values.size() / common; ++k)
+            for_those_beside(k, [&](float other) {
+                if (std::abs(static_cast<double>(other) - static_cast<double>(map_.values[k])) >= step)
+                    values.push_back(map_.values[k]);
+            });
+        if (values.size() > map_.values.size() / common)
+            return {};
+        std::sort(values.begin(), values.end());
+        for (auto first = values.begin(), last = first; first != values.end(); first = last) {
+            last = std::upper_bound(first, values.end(), *first);
+            if (last - first >= static_cast<std::ptrdiff_t>(fewest))
+                found.push_back(*first);
         }
+        return found;
+    }
+
+    /// Fills in the patches, which have different values in ascending order. far: a difference.
+    void look_at(std::vector<Patch>& patches, double far) {
+        for (std::size_t k = 0; k < map_.values.size(); ++k) {
+            if (missing_[k])
+                continue;
+            const float value = map_.values[k];
+            auto patch = std::lower_bound(patches.begin(), patches.end(), value,
+                                          [](const Patch& a, float b) { return a.value < b; });
+            const bool found = patch != patches.end() && patch->value == value;
+            if (found)
+                ++patch->count;
+            for_those_beside(k, [&](float other) {
+                const double difference = std::abs(static_cast<double>(other) - static_cast<double>(value));
+                ++pairs_;
+                differences_ += difference;
+                if (found && other != value) {
+                    ++patch->beside;
+                    patch->far += difference >= far ? 1 : 0;
+                    patch->differences += difference;
+                }
+            });
+        }
+    }
+
+    /// The first rule by which a patch stands out.
+    const Rule* rule_met(const Patch& patch, double span) const {
+        const std::int64_t pairs = pairs_ - 2 * patch.beside;  // each is seen from both its ends
+        const double elsewhere = pairs > 0 ? (differences_ - 2 * patch.differences) / static_cast<double>(pairs) : 0;
+        const bool floor = 2 * patch.count > static_cast<std::int64_t>(map_.values.size());
+        for (const Rule* const rule : patch.rules)
+            if (patch.count >= rule->fewest && (rule->may_be_floor || !floor) &&
+                static_cast<double>(patch.far) >= rule->all_round * static_cast<double>(patch.beside) &&
+                patch.mean_difference() >= std::max(rule->far * span, rule->times * elsewhere))
+                return rule;
+        return nullptr;
+    }
+
+  private:
+    template <class At>
+    void for_those_beside(std::size_t texel, At&& at) const {
+        const auto width = static_cast<std::size_t>(map_.width);
+        const std::size_t x = texel % width;
+        const auto one = [&](bool within, std::size_t other) {
+            if (within && !missing_[other])
+                at(map_.values[other]);
+        };
+        if (missing_[texel])
+            return;
+        one(x > 0, texel - 1);
+        one(x + 1 < width, texel + 1);
+        one(texel >= width, texel - width);
+        one(texel + width < map_.values.size(), texel + width);
+    }
+
+    const HeightMap& map_;
+    std::vector<bool> missing_;
+    std::int64_t pairs_ = 0;
+    double differences_ = 0;
+};
+
+/// Values among the heights, or little apart from them, that may mark missing data.
+Candidates candidates_for(const HeightMap& map, const std::array<Level, 2>& lows, const std::array<Level, 2>& highs,
+                          bool normalised) {
+    constexpr double apart = 0.05, marker_apart = 0.01;  // of the heights' span: from the outermost value to the next
+    const float low = lows[0].value, high = highs[0].value;
+    const double span = static_cast<double>(high) - static_cast<double>(low);
+    const auto is_apart = [&](const std::array<Level, 2>& levels, double part) {
+        return std::abs(static_cast<double>(levels[1].value) - static_cast<double>(levels[0].value)) >= part * span;
+    };
+    Candidates candidates;
+    if (is_apart(lows, apart))
+        candidates[low].push_back(low == 0 && !normalised ? &rare : &frequent);  // others are cliffs
+    if (is_apart(highs, apart))
+        candidates[high].push_back(&frequent);
+    if (normalised)
+        return candidates;
+    if (low < 0 && lows[1].value >= 0)
+        candidates[low].push_back(&rare);
+    if (low < 0 && high > 0)
+        candidates[0].push_back(&inner_zero);
+    for (const double marker : markers)
+        for (const double value : {marker, -marker}) {
+            const float sought = in_precision(value / map.source_units, map.significant_bits);
+            if (sought > low && sought < high) {
+                candidates[sought] = {&rare, &frequent_marker};
+            } else if ((sought == low && is_apart(lows, marker_apart)) ||
+                       (sought == high && is_apart(highs, marker_apart)))
+                candidates[sought].push_back(&rare);
+        }
+    return candidates;
 }
 
-/// The remark on values among the heights, or little apart from them, whose texels stand out from those beside them: one
-/// that often marks missing data, or the lowest or the highest.
-std::string remark_on_patches(const HeightMap& map, const Between& rest, std::vector<std::string>& values) {
-    constexpr double apart = 0.05;  // of the heights' span: from the outermost value to the next
-    constexpr std::size_t many = 256;
+/// The remark on such values whose texels stand out from those beside them.
+std::string remark_on_patches(const HeightMap& map, const Between& rest, bool normalised,
+                              std::vector<std::string>& values) {
+    constexpr std::size_t many = 128;
     if (rest.some(many).size() < many)
         return {};
     const auto lows = rest.outermost<2>(true), highs = rest.outermost<2>(false);
     const double span = static_cast<double>(highs[0].value) - static_cast<double>(lows[0].value);
-    std::vector<Patch> patches;
-    for (const auto& [outermost, next] : {lows, highs})
-        if (std::abs(static_cast<double>(next.value) - static_cast<double>(outermost.value)) >= apart * span)
-            patches.push_back({outermost.value, true});
-    for (const double marker : markers)
-        for (const double value : {marker, -marker})
-            if (const float inside = in_precision(value / map.source_units, map.significant_bits);
-                inside > lows[0].value && inside < highs[0].value)
-                patches.push_back({inside, false});
-    if (patches.empty())
+    Candidates candidates = candidates_for(map, lows, highs, normalised);
+    Neighbours neighbours(map, rest);
+    if (map.source_units == 1 && !normalised) {
+        constexpr std::size_t least_border = 16;  // of a square of inner_value.fewest texels in a corner of the map
+        for (const float value : neighbours.at_steps(inner_value.far * span, least_border))
+            if (value > lows[0].value && value < highs[0].value)
+                candidates[value].push_back(&inner_value);
+    }
+    if (candidates.empty())
         return {};
-    std::sort(patches.begin(), patches.end(), [](const Patch& a, const Patch& b) { return a.value < b.value; });
-    look_beside(map, patches);
-    std::vector<std::string> texts;
+    std::vector<Patch> patches;
+    for (const auto& [value, rules] : candidates)
+        patches.push_back({value, rules});
+    neighbours.look_at(patches, inner_value.far * span);
+    constexpr std::ptrdiff_t most_inner = 1;  // more are flat roofs
+    std::vector<const Rule*> met;
     for (const Patch& patch : patches)
-        if (patch.stands_out(span)) {
-            values.push_back(in_source(patch.value, map));
-            texts.push_back(
-                fmt::format("{} texels hold exactly {}, and those beside them differ from it by {:.6g} on average",
-                            patch.count, values.back(), patch.mean_difference() * map.source_units));
-        }
+        met.push_back(neighbours.rule_met(patch, span));
+    const bool roofs = std::count(met.begin(), met.end(), &inner_value) > most_inner;
+    std::vector<std::string> texts;
+    for (std::size_t k = 0; k < patches.size(); ++k) {
+        if (met[k] == nullptr || (roofs && met[k] == &inner_value))
+            continue;
+        values.push_back(in_source(patches[k].value, map));
+        texts.push_back(
+            fmt::format("{} texels hold exactly {}, and those beside them differ from it by {:.6g} on average",
+                        patches[k].count, values.back(), patches[k].mean_difference() * map.source_units));
+    }
     return fmt::format("{}", fmt::join(texts, "; "));
 }
 
@@ -433,9 +551,8 @@ void suspect_no_data(HeightMap& map, const std::vector<double>& given) {
             found = true;
         }
     }
-    if (!normalised)
-        if (std::string patches = remark_on_patches(map, rest, values); !patches.empty())
-            texts.push_back(std::move(patches));
+    if (std::string patches = remark_on_patches(map, rest, normalised, values); !patches.empty())
+        texts.push_back(std::move(patches));
     if (!texts.empty())
         map.no_data_hint = fmt::format("{}: if that marks missing data, set map.no_data = {}", fmt::join(texts, "; "),
                                        values.size() == 1 ? values[0] : fmt::format("[{}]", fmt::join(values, ", ")));

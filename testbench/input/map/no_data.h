@@ -23,6 +23,8 @@ std::optional<std::array<float, 2>> replace_missing(HeightMap& map, const std::v
 /// four nearly equal ones, is held by several texels and farther from the next value than all others from each other, or
 /// by one, a thousand times as far; a narrower gap is enough beside many values or densely lying ones. Beside fewer than 8
 /// others (masks, steps) the gap must be wide, and the value neither 0 nor an end of the ranges 0..1 and 8 bits.
+/// Also if a value among the heights, or little apart from them, is held by texels that stand out from those beside them:
+/// a usual marker, the lowest or highest value, the only negative one, 0, and in floating-point maps any single one.
 /// Also if near several texels of the lowest or highest value, and nowhere else, lie values between it and the heights:
 /// a border that resampling has blurred. given: map.no_data.
 void suspect_no_data(HeightMap& map, const std::vector<double>& given);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <string>
 #include <vector>
@@ -220,7 +221,122 @@ TEST_CASE("a value within the heights that often marks missing data is told if i
     for (float& value : slope.values)
         value = 300 + (value + 10900) * 1700 / 19000;
     CHECK(advised(hint_with(0, 100)) == "0");
-    CHECK(hint_with(0, 5) == "");
+    CHECK(hint_with(0, 3) == "");
+}
+
+namespace {
+
+constexpr int wide = 64;
+
+/// A smooth relief, `low` to `high` in source units, with a square of `hole` on its slopes.
+HeightMap relief(double low, double high, double hole, int hole_side, double units = 1) {
+    HeightMap map;
+    map.width = map.height = wide;
+    map.source_units = units;
+    for (int y = 0; y < wide; ++y)
+        for (int x = 0; x < wide; ++x) {
+            const double part = 0.5 + 0.3 * std::sin(0.1 * x + 0.003 * y) + 0.2 * std::sin(0.1 * y + 0.7);
+            const bool is_hole = x >= 30 && x < 30 + hole_side && y >= 20 && y < 20 + hole_side;
+            const double value = is_hole ? hole : low + (high - low) * part;
+            map.values.push_back(static_cast<float>((units > 1 ? std::round(value) : value) / units));
+        }
+    return map;
+}
+
+}  // namespace
+
+TEST_CASE("a value that stands out from the texels beside it is told though it is not far from all heights") {
+    struct Row {
+        const char* kind;
+        double low, high, hole, units;
+        int hole_side, too_small;  // 0: not tried
+    };
+    for (const Row& row : {
+             Row{"an outermost marker", 20000, 60000, 65535, 65535, 5, 1},
+             Row{"an outermost marker", 2000, 8848, 9999, 1, 5, 1},
+             Row{"an outermost marker", -9000, 8000, -9999, 1, 5, 1},
+             Row{"an outermost marker", -9500, 8000, -9999, 1, 5, 1},
+             Row{"-9999 + 32768", 21768, 40768, 22769, 65535, 5, 1},
+             Row{"0, the lowest value", 300, 2000, 0, 65535, 3, 1},
+             Row{"another lowest value", 300, 2000, 100, 1, 8, 7},
+             Row{"the highest value", 300, 2000, 2300, 1, 8, 7},
+             Row{"the only negative value", 0, 500, -1, 1, 5, 1},
+             Row{"the only negative value", 0, 2000, -99, 1, 5, 1},
+             Row{"0 among heights", -1500, 400, 0, 1, 10, 7},
+             Row{"0..1", 0.15, 1, 0, 1, 10, 7},
+             Row{"0..1", 0, 0.85, 1, 1, 10, 7},
+             Row{"8 bits", 30, 250, 0, 255, 10, 7},
+             Row{"8 bits", 10, 210, 255, 255, 10, 7},
+             Row{"any value", -11000 * 3.28, 8000 * 3.28, -9999 * 3.28, 1, 10, 7},
+             Row{"any value", 0, 19000, 1001, 1, 10, 7},
+         }) {
+        INFO(row.kind << ": " << row.hole << " in " << row.low << " to " << row.high);
+        HeightMap map = relief(row.low, row.high, row.hole, row.hole_side, row.units);
+        const std::string text = hint(map);
+        CHECK_THAT(text, StartsWith(std::to_string(row.hole_side * row.hole_side) + " texels hold exactly "));
+        REQUIRE_FALSE(advised(text).empty());
+        REQUIRE(replace_missing(map, {std::stod(advised(text))}));
+        CHECK(map.replaced.size() == static_cast<std::size_t>(row.hole_side * row.hole_side));
+        CHECK(hint(map) == "");
+        CHECK(hint(relief(row.low, row.high, row.hole, row.too_small, row.units)) == "");
+        // In noise every value differs from those beside it.
+        std::uint32_t random = 1;
+        for (float& value : map.values) {
+            random = random * 1664525 + 1013904223;
+            value = static_cast<float>((row.low + (row.high - row.low) * (random >> 24) / 255) / row.units);
+            if (random >> 24 == 255)
+                value = static_cast<float>(row.hole / row.units);
+        }
+        map.replaced.clear();
+        CHECK(hint(map) == "");
+    }
+}
+
+TEST_CASE("a value among the heights is told beside one far from them") {
+    HeightMap map = relief(-11000, 8000, -9999, 5);
+    std::fill_n(map.values.begin(), 9, -3.4e38F);
+    CHECK(advised(hint(map)) == "[-3.4e+38, -9999]");
+}
+
+TEST_CASE("level parts of ordinary maps do not seem to be missing data") {
+    const auto levelled = [](double from, double to, auto level) {
+        HeightMap map = relief(from, to, 0, 0);
+        for (float& value : map.values)
+            value = static_cast<float>(level(static_cast<double>(value)));
+        return hint(map);
+    };
+    CHECK(levelled(-800, 900, [](double z) { return std::clamp(z, -500.0, 600.0); }) == "");      // clipped
+    CHECK(levelled(-800, 900, [](double z) { return std::abs(z) < 100 ? 0 : z; }) == "");         // a plain
+    CHECK(levelled(0, 900, [](double z) { return z < 200 ? 199 : z; }) == "");                    // a lake
+    CHECK(levelled(0, 65535, [](double z) { return z < 40000 ? z : 65535; }) != "");              // a hole
+    CHECK(levelled(0, 1000, [](double z) { return std::round(z / 20) * 20 + z / 1000; }) == "");  // terraces
+    INFO("flat roofs");
+    HeightMap town = relief(0, 20, 0, 0);
+    for (int k = 0; k < 9; ++k)
+        for (int y = 0; y < 9; ++y)
+            for (int x = 0; x < 9; ++x)
+                town.at(5 + 20 * (k % 3) + x, 5 + 20 * (k / 3) + y) = static_cast<float>(40 + 3 * k);
+    CHECK(hint(town) == "");
+    INFO("padding that meets others at one end");
+    HeightMap padded = relief(0, 0, 0, 0);
+    for (int y = 0; y < wide; ++y)
+        for (int x = 0; x < wide; ++x)
+            padded.at(x, y) = x >= 30 && x < 50 && y >= 20 && y < 24
+                                  ? 30.205F
+                                  : static_cast<float>(x) + 0.01F * static_cast<float>(y);
+    CHECK(hint(padded) == "");
+    INFO("texels set to the lowest height");
+    HeightMap filled = relief(1, 500, 1e20, 10);
+    filled.values.front() = -1;
+    REQUIRE(replace_missing(filled, {1e20}));
+    CHECK(hint(filled) == "");
+    INFO("0 as a ground with figures on it and in it");
+    HeightMap ground = relief(-0.1, 3, 0, 0);
+    for (int y = 0; y < wide; ++y)
+        for (int x = 0; x < wide; ++x)
+            if (y < 40)
+                ground.at(x, y) = 0;
+    CHECK(hint(ground) == "");
 }
 
 TEST_CASE("beside many values, which lie close together, a narrower gap is enough") {
