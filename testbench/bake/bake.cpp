@@ -71,7 +71,26 @@ BakedMap bake_patch(const NurbsPatch& patch, int width, int height) {
     return map;
 }
 
-/// Finds the texels that a mesh covers, and their displacement.
+/// The point of a triangle's border nearest to `p`, in barycentric coordinates.
+glm::dvec3 nearest_on_border(const std::array<glm::dvec2, 3>& t, const glm::dvec2& p) {
+    glm::dvec3 nearest(0);
+    double least = HUGE_VAL;
+    for (int k = 0; k < 3; ++k) {
+        const int next = (k + 1) % 3;
+        const glm::dvec2 from = t[static_cast<std::size_t>(k)], edge = t[static_cast<std::size_t>(next)] - from;
+        const double part = std::clamp(glm::dot(p - from, edge) / glm::dot(edge, edge), 0.0, 1.0);
+        const double distance = glm::distance(p, from + part * edge);
+        if (distance >= least)
+            continue;
+        least = distance;
+        nearest = glm::dvec3(0);
+        nearest[k] = 1 - part;
+        nearest[next] = part;
+    }
+    return nearest;
+}
+
+/// Finds the texels that a mesh covers, or nearly, and their displacement.
 class MeshSampler {
   public:
     MeshSampler(const QuadricSurface& surface, const BaseMesh& mesh, const Job::Map& map, int width, int height)
@@ -87,6 +106,11 @@ class MeshSampler {
         check_work(base);
         for (std::uint32_t k = 0; k < base.triangles(); ++k)
             sample(base.corners(k), k);
+        if (std::count(owner_.begin(), owner_.end(), nobody) == 0)
+            return;
+        outside_.assign(owner_.size(), bake_margin);
+        for (std::size_t k = 0; k < base.triangles(); ++k)
+            continue_past(base.corners(k));
     }
 
     BakedMap take() {
@@ -111,6 +135,12 @@ class MeshSampler {
         for (std::size_t k = 0; k < covered.size(); ++k)
             all[covered[k]] = baked_.values[k];
         baked_.values = std::move(all);
+        for (std::uint32_t k = 0; k < owner_.size(); ++k)
+            if (owner_[k] == nobody && !std::isnan(baked_.values[k])) {
+                owner_[k] = 0;
+                covered.push_back(k);
+                ++baked_.continued;
+            }
         spread(std::move(covered));
         return std::move(baked_);
     }
@@ -142,20 +172,61 @@ class MeshSampler {
             }
             owner_[texel] = triangle;
             inside_[texel] = inside;
-            const auto mixed = [&b](const std::array<glm::dvec3, 3>& at) {
-                return b.x * at[0] + b.y * at[1] + b.z * at[2];
-            };
-            const glm::dvec3 normal = unit_or_zero(mixed(corners.normal));
-            if (normal == glm::dvec3(0))
-                return;
-            const std::optional<double> t =
-                intersect(surface_.quadric, mixed(corners.position), normal, surface_.root.value_or(Root::nearest));
-            if (t)
+            const Foot foot(corners, b);
+            if (const std::optional<double> t = displacement(foot))
                 baked_.values[texel] = *t;
         });
     }
 
-    /// Spreads values ring by ring, from all covered texels at once.
+    /// Gives texels beside a triangle, which none covers, the surface over the triangle's plane and its linear normals,
+    /// if no other triangle is nearer.
+    void continue_past(const DisplacedSurface::Corners& corners) {
+        const auto [columns, rows] = grid_box(corners.texel, bake_margin);
+        const auto beyond = [](std::int64_t index, std::int64_t size, Addressing mode) {
+            return mode == Addressing::clamp && (index < 0 || index >= size);
+        };
+        const auto beside = [&](std::int64_t x, std::int64_t y, const glm::dvec3& b) {
+            if (beyond(x, baked_.width, addressing_.address_u) || beyond(y, baked_.height, addressing_.address_v))
+                return;
+            const std::size_t texel = texel_index(x, y);
+            if (owner_[texel] != nobody)
+                return;
+            const glm::dvec3 nearest = nearest_on_border(corners.texel, glm::dvec2(x, y) + 0.5);
+            const auto distance = static_cast<float>(glm::length(DisplacedSurface::texel(corners, b - nearest)));
+            if (distance >= outside_[texel])
+                return;
+            outside_[texel] = distance;
+            baked_.values[texel] = continued(Foot(corners, b), Foot(corners, nearest)).value_or(NAN);
+        };
+        for_texel_centres(corners.texel, columns, rows, beside, bake_margin);
+    }
+
+    /// Where a displacement begins.
+    struct Foot {
+        glm::dvec3 position, normal;
+        Foot(const DisplacedSurface::Corners& corners, const glm::dvec3& b)
+            : position(mixed(corners.position, b)), normal(unit_or_zero(mixed(corners.normal, b))) {}
+        static glm::dvec3 mixed(const std::array<glm::dvec3, 3>& at, const glm::dvec3& b) {
+            return b.x * at[0] + b.y * at[1] + b.z * at[2];
+        }
+    };
+
+    std::optional<double> displacement(const Foot& foot) const {
+        if (foot.normal == glm::dvec3(0))
+            return {};
+        return intersect(surface_.quadric, foot.position, foot.normal, surface_.root.value_or(Root::nearest));
+    }
+
+    /// The displacement at `outside`, if it continues that at `border`.
+    std::optional<double> continued(const Foot& outside, const Foot& border) const {
+        constexpr double steepest = 16;  // beyond, the line meets another part of the surface
+        const std::optional<double> there = displacement(outside), here = displacement(border);
+        if (!there || !here || std::abs(*there - *here) > steepest * glm::distance(outside.position, border.position))
+            return {};
+        return std::max(*there, surface_.floor.value_or(-HUGE_VAL));
+    }
+
+    /// Spreads values ring by ring, from all texels that have one.
     void spread(std::vector<std::uint32_t> reached) {
         for (std::size_t next = 0; next < reached.size(); ++next) {
             const std::int64_t at = reached[next], x = at % baked_.width, y = at / baked_.width;
@@ -183,6 +254,7 @@ class MeshSampler {
     BakedMap baked_;
     std::vector<std::uint32_t> owner_;  // the triangle that gave a texel its value
     std::vector<bool> inside_, overlaps_;
+    std::vector<float> outside_;  // uncovered texels' distance from the nearest triangle, in texels
 };
 
 }  // namespace

@@ -18,8 +18,12 @@ struct BakedMap {
     std::size_t raised = 0;     ///< texels where it is lower than its floor
     double floor = 0;           ///< the height of absent and raised texels
     std::size_t uncovered = 0;  ///< texels whose centre no base triangle covers
+    std::size_t continued = 0;  ///< of those, texels that hold the surface continued past a triangle
     std::size_t overlaps = 0;   ///< texels whose centre lies inside several base triangles
 };
+
+/// In texels: as far as bilinear filtering of N', or of the next level of detail, reads beside a triangle.
+constexpr float bake_margin = 4;
 
 /// Heights over the plane z = 0; of a quadric the upper ones by default. Texel (x, y) of a quadric is at low + (x +
 /// 0.5, y + 0.5) / (width, height) of the domain; of a NURBS patch at that fraction of its parameters. Sides 1..4096.
@@ -35,8 +39,10 @@ BakedMap bake_heights(const Surface& surface, int width, int height);
 ///   that it repeats.
 /// - If several triangles cover a texel's centre the first in the mesh counts (overlaps), since a map holds only one
 ///   surface; so it cannot represent an overhang either.
-/// - A texel whose centre no triangle covers gets the value of the nearest covered texel, counted in texel steps, along
-///   u first: vertices on a border of the covered part may read it.
+/// - A texel whose centre no triangle covers, at most `bake_margin` from one, gets the surface over the nearest
+///   triangle's plane and linear normals, so that filters and N' are right at the covered part's border; not if the
+///   surface is absent there, or does not continue that at the border.
+/// - Another gets the value of the nearest texel that has one, counted in texel steps, along u first.
 ///
 /// The displaced points lie on the quadric for any base mesh. The normal map assumes that the base surface is as smooth
 /// as its normals, so a coarse round base shows its facets in the shading: at most half the angle between two of them.

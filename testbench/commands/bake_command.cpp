@@ -90,8 +90,10 @@ std::string summary(const BakedMap& map, const EncodedMap& file) {
     if (map.raised > 0)
         text += fmt::format("  below the floor   {}: {:.6g} there\n", share(map.raised, map), map.floor);
     if (map.uncovered > 0)
-        text += fmt::format("  no base triangle  at {}: set to their nearest neighbours' values\n",
-                            share(map.uncovered, map));
+        text += fmt::format(
+            "  no base triangle  at {}: {} at most {:g} from one hold the surface continued past it, the others "
+            "their nearest neighbours' values\n",
+            share(map.uncovered, map), map.continued, bake_margin);
     if (map.overlaps > 0)
         text += fmt::format("  note: {} lie in several base triangles; the map holds the first one's surface\n",
                             share(map.overlaps, map));

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -135,24 +136,94 @@ TEST_CASE("bake: root chooses between the two sides of a quadric") {
     CHECK(centre(Root::nearest) == Approx(-1.5));
 }
 
-TEST_CASE("bake: texels without a triangle take the value of the nearest covered texel, across borders that repeat") {
-    // One triangle over the lower left part; its plane is z = 0, and texture = position.
-    const std::string text =
-        "v 0 0 0\nv 0.5 0 0\nv 0 0.5 0\nvt 0 0\nvt 0.5 0\nvt 0 0.5\nvn 0 0 1\nf 1/1/1 2/2/1 3/3/1\n";
-    const BaseMesh mesh = parse_obj(text, "t.obj");
-    QuadricSurface ramp;  // z = x + 10 y
+namespace {
+
+/// One triangle over the lower left part; its plane is z = 0, and texture = position.
+BaseMesh corner_triangle() {
+    return parse_obj("v 0 0 0\nv 0.5 0 0\nv 0 0.5 0\nvt 0 0\nvt 0.5 0\nvt 0 0.5\nvn 0 0 1\nf 1/1/1 2/2/1 3/3/1\n",
+                     "t.obj");
+}
+
+/// z = x + 10 y
+QuadricSurface ramp_surface() {
+    QuadricSurface ramp;
     ramp.quadric = {{0, 0, 0}, glm::dmat3(0), {1, 10, -1}, 0};
-    const BakedMap map = bake_over_mesh(ramp, mesh, {}, 4, 4);
-    // Centres inside: (0,0), (1,0), (0,1); the last two lie on the long edge.
-    CHECK(map.uncovered == 13);
-    CHECK(at(map, 0, 0) == Approx(1.375));
-    CHECK(at(map, 1, 0) == Approx(1.625));
-    CHECK(at(map, 0, 1) == Approx(3.875));
-    CHECK(at(map, 3, 0) == at(map, 1, 0));
-    CHECK(at(map, 0, 3) == at(map, 0, 1));
-    const BakedMap repeated = bake_over_mesh(ramp, mesh, repeat_u(), 4, 4);
-    CHECK(at(repeated, 3, 0) == at(repeated, 0, 0));
-    CHECK(at(repeated, 2, 0) == at(repeated, 1, 0));
+    return ramp;
+}
+
+}  // namespace
+
+TEST_CASE("bake: texels beside a triangle continue the surface, others take the nearest texel's value") {
+    constexpr int side = 16;
+    const auto ramp = [](int x, int y) { return Approx((x + 0.5 + 10 * (y + 0.5)) / side); };
+    const BakedMap map = bake_over_mesh(ramp_surface(), corner_triangle(), {}, side, side);
+    CHECK(map.uncovered == side * side - 36);
+    std::size_t continued = 0;
+    for (int y = 0; y < side; ++y)
+        for (int x = 0; x < side; ++x) {
+            INFO(x << ' ' << y);
+            // The nearest point is on the long edge or at one of its ends, 8 texels from the origin.
+            const double px = x + 0.5, py = y + 0.5, along = std::clamp((px - py + 8) / 2, 0.0, 8.0);
+            const bool covered = x + y + 1 <= 8, beside = !covered && std::hypot(px - along, py - 8 + along) < 4;
+            continued += beside;
+            if (covered || beside)
+                CHECK(at(map, x, y) == ramp(x, y));
+        }
+    CHECK(map.continued == continued);
+    CHECK(at(map, 15, 0) == at(map, 11, 0));
+    CHECK(at(map, 0, 15) == at(map, 0, 11));
+    const BakedMap repeated = bake_over_mesh(ramp_surface(), corner_triangle(), repeat_u(), side, side);
+    CHECK(at(repeated, 15, 0) == ramp(-1, 0));
+    CHECK(at(repeated, 12, 0) == ramp(-4, 0));
+    CHECK(at(repeated, 11, 0) == ramp(11, 0));
+    INFO("not where the surface is absent, nor where it does not go on: a sphere's other side, a given floor");
+    BaseMesh edge = make_plane(1, 1, 1, 1);  // x and y to 0.5
+    for (BaseVertex& v : edge.vertices)
+        v.texture = v.texture * 0.5 + 0.25;
+    CHECK(bake_over_mesh(sphere(0.5), edge, {}, 40, 40).continued == 0);
+    // (z - 0.5 - x)(z + 1) = 0: from x = 0.5 on, the second is the nearer.
+    QuadricSurface pair;
+    pair.quadric = {{0, 0, 0}, {{0, 0, -0.5}, {0, 0, 0}, {-0.5, 0, 1}}, {-1, 0, 0.5}, -0.5};
+    const BakedMap one = bake_over_mesh(pair, edge, {}, 40, 40);
+    CHECK(at(one, 9, 20) == Approx(-0.025));
+    CHECK(at(one, 30, 20) == at(one, 29, 20));
+    QuadricSurface floored = ramp_surface();
+    floored.floor = 0.5;
+    const BakedMap raised = bake_over_mesh(floored, edge, {}, 40, 40);
+    CHECK(*std::min_element(raised.values.begin(), raised.values.end()) == 0.5);
+}
+
+TEST_CASE("bake: between two parts of the map a texel continues the nearer") {
+    const std::string text =
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
+        "vt 0.1 0\nvt 0.4 0\nvt 0.4 1\nvt 0.1 1\nvt 0.45 0\nvt 0.75 0\nvt 0.75 1\nvt 0.45 1\nvn 0 0 1\n";
+    const std::string low = "f 1/1/1 2/2/1 3/3/1 4/4/1\n", high = "f 5/5/1 6/6/1 7/7/1 8/8/1\n";
+    QuadricSurface level;
+    level.quadric = {{0, 0, 0}, glm::dmat3(0), {0, 0, 1}, -5};
+    for (const std::string& faces : {low + high, high + low}) {
+        const BakedMap map = bake_over_mesh(level, parse_obj(text + faces, "t.obj"), {}, 40, 4);
+        CHECK(at(map, 16, 1) == Approx(5));  // they end at 16 and begin at 18
+        CHECK(at(map, 17, 1) == Approx(4));
+    }
+}
+
+TEST_CASE("bake: at the border of a part of the map a sphere's slopes are right") {
+    constexpr double radius = 2;
+    constexpr int side = 80;
+    BaseMesh mesh = make_plane(4, 4, 2, 2);  // -1 to 1
+    for (BaseVertex& v : mesh.vertices)
+        v.texture = v.texture * 0.8 + 0.1;
+    const BakedMap map = bake_over_mesh(sphere(radius), mesh, {}, side, side);
+    const double texel = 2 / (0.8 * side);
+    for (int y = 8 - 3; y < side - 8 + 3; ++y)
+        for (int x = 8 - 3; x < side - 8 + 3; ++x) {
+            if (std::hypot(std::max({7 - x, x - 72, 0}), std::max({7 - y, y - 72, 0})) > 2.5)
+                continue;
+            const glm::dvec3 normal = glm::normalize(
+                glm::dvec3(at(map, x - 1, y) - at(map, x + 1, y), at(map, x, y - 1) - at(map, x, y + 1), 2 * texel));
+            const glm::dvec3 point((x + 0.5 - side / 2) * texel, (y + 0.5 - side / 2) * texel, at(map, x, y));
+            REQUIRE(glm::distance(normal, point / radius) < 0.002);
+        }
 }
 
 TEST_CASE(
@@ -162,12 +233,10 @@ TEST_CASE(
         "v -0.25 1.25 0\nv 0.75 1.25 0\nv 0.75 2.25 0\nv -0.25 2.25 0\n"
         "vt -0.25 1.25\nvt 0.75 1.25\nvt 0.75 2.25\nvt -0.25 2.25\nvn 0 0 1\nf 1/1/1 2/2/1 3/3/1 4/4/1\n";
     const BaseMesh mesh = parse_obj(text, "t.obj");
-    QuadricSurface ramp;  // z = x + 10 y
-    ramp.quadric = {{0, 0, 0}, glm::dmat3(0), {1, 10, -1}, 0};
     const auto [width, height] = GENERATE(table<int, int>({{4, 4}, {8, 4}, {4, 12}}));
     Job::Map both;
     both.address_u = both.address_v = Addressing::repeat;
-    const BakedMap map = bake_over_mesh(ramp, mesh, both, width, height);
+    const BakedMap map = bake_over_mesh(ramp_surface(), mesh, both, width, height);
     CHECK(map.uncovered == 0);
     CHECK(map.overlaps == 0);
     for (int y = 0; y < height; ++y)
@@ -179,17 +248,13 @@ TEST_CASE(
 }
 
 TEST_CASE("bake: values spread across the borders that repeat, on either axis") {
-    const BaseMesh mesh = parse_obj(
-        "v 0 0 0\nv 0.5 0 0\nv 0 0.5 0\nvt 0 0\nvt 0.5 0\nvt 0 0.5\nvn 0 0 1\nf 1/1/1 2/2/1 3/3/1\n", "t.obj");
-    QuadricSurface ramp;
-    ramp.quadric = {{0, 0, 0}, glm::dmat3(0), {1, 10, -1}, 0};
     for (const bool along_u : {true, false}) {
         Job::Map addressing;
         (along_u ? addressing.address_u : addressing.address_v) = Addressing::repeat;
-        const BakedMap map = bake_over_mesh(ramp, mesh, addressing, 4, 4);
-        // Texel 3 is beside texel 0 if the axis repeats, else two beside texel 1.
-        CHECK(at(map, 3, 0) == at(map, along_u ? 0 : 1, 0));
-        CHECK(at(map, 0, 3) == at(map, 0, along_u ? 1 : 0));
+        const BakedMap map = bake_over_mesh(ramp_surface(), corner_triangle(), addressing, 32, 32);
+        // Texels 20 to 27 are neither beside 15, the last covered one, nor, if the axis repeats, beside 0.
+        CHECK(at(map, 26, 0) == at(map, along_u ? 28 : 19, 0));
+        CHECK(at(map, 0, 26) == at(map, 0, along_u ? 19 : 28));
     }
 }
 

@@ -81,7 +81,7 @@ TEST_CASE("bake: the job fits the domain and finds its files from its own folder
     write_all(here.path() / "ball.toml", "[quadric]\nshape = \"sphere\"\nradius = 3\n");
     const std::string out =
         succeed({"bake", "ball.toml", "--mesh", "base/job.toml", "--output", "out/ball.pgm"}, here.path()).out;
-    CHECK_THAT(out, Contains("no base triangle"));
+    CHECK_THAT(out, Contains("no base triangle") && Contains("hold the surface continued past it"));
     CHECK_THAT(read_all(here.path() / "out/ball.job.toml"), Contains("file = \"../base/square.obj\""));
     succeed({"run", "out/ball.job.toml"}, here.path());
     CHECK_THAT(succeed({"bake", "wide.toml", "--output", "wide.png"}, here.path()).out,
