@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/glm.hpp>
 #include <utility>
 
 #include "testbench/machine/bare_recursion.h"
 #include "testbench/machine/resolve_job.h"
 #include "testbench/setup/bound_promise.h"
+#include "testbench/setup/map_displacement.h"
 #include "testbench/setup/prepare_model.h"
 #include "testbench/setup/tables/fitted_heights.h"
 
@@ -75,20 +77,40 @@ void fit_heights_to_own_mesh(std::int64_t most_triangles, MachineSetup& setup) {
             "largest distance from the surface; the map's own are used");
 }
 
+double largest_extent(const BaseMesh& mesh) {
+    glm::dvec3 low(HUGE_VAL), high(-HUGE_VAL);
+    for (const BaseVertex& vertex : mesh.vertices) {
+        low = glm::min(low, vertex.position);
+        high = glm::max(high, vertex.position);
+    }
+    return std::max({high.x - low.x, high.y - low.y, high.z - low.z});
+}
+
 /// A sentence for the report if the map's values are all one, or so few of those that displacement.scale spans that the
-/// surface is nearly flat (metres in 16 bits), or lie far beyond them; else empty.
-std::string unused_range_remark(const MapRange& range, const HeightMap& map) {
+/// surface is nearly flat (metres in 16 bits), or lie far beyond them and displace by more than the mesh's size; else
+/// empty.
+std::string unused_range_remark(const Job& job, const BaseMesh& mesh, const HeightMap& map) {
     constexpr double least_part = 1.0 / 8;
     const auto [low, high] = map.extremes();
     const double part = (high - low) / (std::max(high, map.span_high) - std::min(low, map.span_low));
     if (high == low)
         return fmt::format("every texel of the map holds {:.6g}: the surface has no relief", low * map.source_units);
-    if (range.kind == MapRange::Kind::data || part >= least_part)
+    const bool in_model_units =
+        map.source_units == 1 && job.map.range.kind == MapRange::Kind::full && job.displacement.scale == 1;
+    if (job.map.range.kind == MapRange::Kind::data || in_model_units)
+        return {};
+    const MapDisplacement displacement = MapDisplacement::from(job.displacement, map);
+    const double span = map.span_high - map.span_low;
+    const auto [lowest, highest] = std::minmax({displacement.of(low), displacement.of(high)});
+    const bool far =
+        (low < map.span_low - span || high > map.span_high + span) && std::max(-lowest, highest) > largest_extent(mesh);
+    if (part >= least_part && !far)
         return {};
     const std::string spans = fmt::format(
-        "the {:.6g} to {:.6g} that displacement.scale spans: set map.range = \"data\" to "
+        "the {:.6g} to {:.6g} that displacement.scale spans{}: set map.range = \"data\" to "
         "span only values that occur",
-        map.span_low * map.source_units, map.span_high * map.source_units);
+        map.span_low * map.source_units, map.span_high * map.source_units,
+        far ? fmt::format(", and displace by {:.6g} to {:.6g} model units", lowest, highest) : "");
     const std::string values =
         fmt::format("the map's values, {:.6g} to {:.6g}, ", low * map.source_units, high * map.source_units);
     if (low >= map.span_low && high <= map.span_high)
@@ -106,7 +128,7 @@ MachineSetup make_setup(const Job& job, const BaseMesh& mesh, const HeightMap& m
         prepare_model(settings, mesh, map, job.map.source == MapSource::file ? job.map.file : "map");
     setup.model_scale = {setup.scale, {setup.centre[0], setup.centre[1], setup.centre[2]}};
     setup.summed_height_bits_chosen = job.formats.summed_height_bits == 0;
-    if (std::string remark = unused_range_remark(job.map.range, map);
+    if (std::string remark = unused_range_remark(job, mesh, map);
         !remark.empty() && job.map.source != MapSource::constant)
         setup.remarks.insert(setup.remarks.begin(), std::move(remark));
     setup.design = make_design(job);

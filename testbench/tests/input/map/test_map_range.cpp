@@ -34,9 +34,10 @@ std::vector<double> displacements(const HeightMap& map) {
 }
 
 /// The same, from the machine's codes and registers.
-std::vector<double> machine_displacements(HeightMap map, const MapRange& range, MachineSetup* out = nullptr) {
+std::vector<double> machine_displacements(HeightMap map, const MapRange& range, MachineSetup* out = nullptr,
+                                          const DisplacementSettings& displacement = {3, 10}) {
     Job job;
-    job.displacement = {3, 10};
+    job.displacement = displacement;
     job.map.range = range;
     span_values(map, range);
     const BaseMesh mesh = make_plane(1, 1, 20, 20);
@@ -73,18 +74,31 @@ TEST_CASE("full: the scale spans the source's range of values") {
 }
 
 TEST_CASE("full: values far beyond the range, and a map without relief, are said") {
-    const auto remarks = [](const std::vector<float>& values) {
+    const auto remarks = [](const std::vector<float>& values, double scale = 3, const MapRange& range = {}) {
         HeightMap map = metres();
         map.source_units = 1;
         map.values = values;
         MachineSetup setup;
-        machine_displacements(map, {}, &setup);
+        machine_displacements(map, range, &setup, {scale, 10});
         return setup.remarks;
     };
     const std::vector<std::string> beyond = remarks({20, 20.5F, 21, 21.5F});
     REQUIRE(beyond.size() == 1);
     CHECK_THAT(beyond.front(),
                Contains("the map's values, 20 to 21.5, lie beyond the 0 to 1") && Contains("set map.range = \"data\""));
+    INFO("values that vary much");
+    const std::vector<float> elevations{300, 700, 1500, 2000};
+    const std::vector<std::string> metres = remarks(elevations, 0.3);
+    REQUIRE(metres.size() == 1);
+    CHECK_THAT(metres.front(), Contains("the map's values, 300 to 2000, lie beyond the 0 to 1 that displacement.scale "
+                                        "spans, and displace by 100 to 610 model units: set map.range = \"data\""));
+    CHECK(remarks(elevations, 0.3, {MapRange::Kind::data}).empty());
+    CHECK(remarks(elevations, 0.003).empty());  // a conversion of units
+    CHECK(remarks({-1, 0, 1, 2}).empty());
+    INFO("values in model units");
+    CHECK(remarks(elevations, 1).empty());
+    CHECK(remarks({20, 20.5F, 21, 21.5F}, 1).empty());
+    CHECK(remarks({0.2F, 0.21F, 0.22F, 0.23F}, 1).empty());
     const std::vector<std::string> level = remarks({0.5F, 0.5F, 0.5F, 0.5F});
     REQUIRE(level.size() == 1);
     CHECK(level.front() == "every texel of the map holds 0.5: the surface has no relief");
