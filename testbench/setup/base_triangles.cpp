@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "testbench/common/error.h"
@@ -20,8 +21,16 @@ bool clamps(const BaseMesh& mesh, datapath::AddressMode mode) {
     return mode == datapath::AddressMode::clamp && !mesh.beyond_map;
 }
 
+constexpr double rounding = 1.0 / 16;  // texels; of the program that wrote a file
+
+/// Whether a clamped border stretches the map across a triangle: one corner beyond it, another on its other side.
+bool is_crossed(const std::array<double, 3>& at, std::uint32_t size) {
+    const auto [low, high] = std::minmax_element(at.begin(), at.end());
+    return (*low * size<-rounding&& * high * size> rounding) ||
+           (*high * size > size + rounding && *low * size < size - rounding);
+}
+
 std::uint32_t to_texture(double coordinate, std::uint32_t size, bool clamp, const Format& format, bool& clamped) {
-    constexpr double rounding = 1.0 / 16;  // texels; of the program that wrote the file
     double texels = coordinate * size;
     if (clamp) {
         clamped = texels < -rounding || texels > size + rounding;
@@ -129,6 +138,14 @@ void round_base_triangles(const BaseMesh& original, const ModelScale& model_scal
         clamped_v = clamped_v || beyond_v;
         vertices.push_back(vertex);
     }
+    const auto is_stretched = [&](const std::array<std::uint32_t, 3>& corners) {
+        std::array<double, 3> u{}, v{};
+        for (std::size_t k = 0; k < 3; ++k) {
+            u[k] = mesh.vertices[corners[k]].texture.x;
+            v[k] = mesh.vertices[corners[k]].texture.y;
+        }
+        return (clamped_u && is_crossed(u, map.width)) || (clamped_v && is_crossed(v, map.height));
+    };
     const auto same = [](const datapath::Vertex& a, const datapath::Vertex& b) {
         return a.position == b.position && a.texture == b.texture;
     };
@@ -151,11 +168,19 @@ void round_base_triangles(const BaseMesh& original, const ModelScale& model_scal
         scene.remarks.push_back(
             fmt::format("{} base triangles collapsed when rounded to the hardware's formats, and were dropped",
                         scene.base_dropped));
-    if (scene.texture_clamped > 0)
+    if (scene.texture_clamped > 0) {
+        const auto stretched = std::count_if(mesh.triangles.begin(), mesh.triangles.end(), is_stretched);
         scene.remarks.push_back(fmt::format(
             "{} base vertices have texture coordinates outside 0..1, and were set to the map's border, where "
-            "heights are its own and normals are not right; if they tile, {}, else move them into 0..1",
-            scene.texture_clamped, tiling_remedy(original, map, formats.texture, clamped_u, clamped_v)));
+            "normals are not right{}; if they tile, {}, else move them into 0..1",
+            scene.texture_clamped,
+            stretched > 0
+                ? fmt::format("; that stretches the map across {} triangles, and heights and normals within it "
+                              "are wrong: cut the mesh along the border",
+                              stretched)
+                : "",
+            tiling_remedy(original, map, formats.texture, clamped_u, clamped_v)));
+    }
 }
 
 }  // namespace tessera

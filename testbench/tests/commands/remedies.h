@@ -160,6 +160,8 @@ inline const std::map<std::string, std::vector<Remedy>>& remedies() {
               "set map.address_u = \"repeat\" and map.address_v = \"repeat\"", ""},
              {"printf '%s\\n' 'vt 1 0' 'vt 2 0' 'vt 2 1' 'vt 1 1' > a.obj; square 1 | grep -v vt >> a.obj; run mesh.file=a.obj", "else move them into 0..1",
               "square 1 > a.obj; run mesh.file=a.obj"},
+             {"printf '%s\\n' 'v '{0,1,2}' 0 0' 'v '{0,1,2}' 1 0' 'vt '{0,1,2}' 0' 'vt '{0,1,2}' 1' > a; { cat a; echo f 1/1 3/3 6/6 4/4; } > a.obj; run mesh.file=a.obj",
+              "cut the mesh along the border", "{ cat a; printf 'f %s\\n' '1/1 2/2 5/5 4/4' '2/2 3/3 6/6 5/5'; } > a.obj; run mesh.file=a.obj"},
              {"square 1 | sed '4s/.*/vt 100 0/' > a.obj; run mesh.file=a.obj formats.texture_integer=6", "with a map of at most {} texels a side",
               "run mesh.file=a.obj map.address_u=repeat formats.texture_integer=12 map.width=40"},
          }},

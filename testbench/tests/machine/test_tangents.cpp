@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "testbench/check/mesh/invariants.h"
+#include "testbench/input/mesh/built_in.h"
 #include "testbench/input/mesh/obj_reader.h"
 #include "testbench/machine/bare_recursion.h"
 #include "testbench/machine/resolve_job.h"
@@ -442,6 +443,21 @@ TEST_CASE("texture coordinates beyond the map by rounding are no fault") {
         CHECK_THAT(testing::joined(beyond(by).remarks), !Contains("outside 0..1"));
     }
     CHECK(beyond(1e-3).texture_clamped == 4);
+}
+
+TEST_CASE("a border that stretches the map across triangles is said, with their number") {
+    const auto remarks = [](int columns, double from, double to) {
+        BaseMesh mesh = make_plane(columns, 1, 2, 2);
+        for (BaseVertex& vertex : mesh.vertices)
+            vertex.texture.x = from + (to - from) * vertex.texture.x;
+        return testing::joined(setup_of(mesh, hill_map()).remarks);
+    };
+    const std::string text = "that stretches the map across ";
+    CHECK_THAT(remarks(1, 0, 2), Contains(text + "2 triangles, and heights and normals within it are wrong"));
+    CHECK_THAT(remarks(3, -0.5, 1.5), Contains(text + "4 triangles"));
+    CHECK_THAT(remarks(2, 0, 2), Contains("outside 0..1") && !Contains(text));
+    CHECK_THAT(remarks(2, -1, 1), Contains("outside 0..1") && !Contains(text));
+    CHECK_THAT(remarks(1, 2, 3), Contains("outside 0..1") && !Contains(text));
 }
 
 TEST_CASE("one texel size: triangles with next to no area in the map are said") {
