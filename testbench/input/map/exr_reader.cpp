@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <exception>
 #include <new>
 #include <string_view>
@@ -50,14 +51,9 @@ std::string choose_channel(const std::filesystem::path& path, const Imf::Channel
     return names.front();
 }
 
-void add_remarks(const std::string& name, Imf::PixelType type, HeightMap& map) {
-    if (type == Imf::UINT) {
-        map.repairs.push_back(
-            fmt::format("Channel {} holds 32-bit unsigned integers; they were converted to float, which is "
-                        "exact up to 16777216.",
-                        printable_ascii(name)));
+void remark_on_subnormal(Imf::PixelType type, HeightMap& map) {
+    if (type == Imf::UINT)
         return;
-    }
     const float smallest_normal = type == Imf::HALF ? 0x1p-14F : 0x1p-126F;
     const auto subnormal = std::count_if(map.values.begin(), map.values.end(), [smallest_normal](float value) {
         return value != 0 && std::fabs(value) < smallest_normal;
@@ -84,9 +80,12 @@ class ExrMap {
 
     const Imf::ChannelList& channels() const { return file_.header().channels(); }
 
-    /// Texels outside the data window are 0. Counts the texels in which the others differ.
+    /// Texels outside the data window are 0. Counts the texels in which the others differ, and those of unsigned integers
+    /// that a float does not hold.
     HeightMap read(const std::string& name, std::vector<Other>& others) {
         HeightMap map;
+        const bool whole = channels()[name].type == Imf::UINT;
+        std::int64_t rounded = 0;
         map.width = static_cast<int>(image_.width());
         map.height = static_cast<int>(image_.height());
         map.values.resize(static_cast<std::size_t>(map.width) * static_cast<std::size_t>(map.height));
@@ -100,22 +99,40 @@ class ExrMap {
         const int left = std::max(data_.min.x, image_.left), right = std::min(data_.max.x, image_.right);
         for (int first = top; first <= bottom; first += lines) {
             const int last = std::min(bottom, first + lines - 1);
-            read_strip(name, others, first, last, strips);
+            read_strip(name, whole, others, first, last, strips);
             for (int y = first; y <= last; ++y) {
                 const std::size_t from =
                     static_cast<std::size_t>(y - first) * width + static_cast<std::size_t>(left - data_.min.x);
                 const std::size_t count = static_cast<std::size_t>(right - left) + 1;
-                const float* const row = strips[0].data() + from;
+                float* const row = strips[0].data() + from;
+                if (whole)
+                    rounded += round_integers(row, count);
                 std::copy_n(row, count, &map.at(left - image_.left, map.height - 1 - (y - image_.top)));
                 for (std::size_t k = 0; k < others.size(); ++k)
                     if (!others[k].subsampled)
                         compare(row, strips[k + 1].data() + from, count, others[k]);
             }
         }
+        if (rounded > 0)
+            map.repairs.push_back(fmt::format(
+                "{} texel{} of channel {} hold{} unsigned integers beyond 16777216 that were rounded to 24 bits.",
+                rounded, rounded == 1 ? "" : "s", printable_ascii(name), rounded == 1 ? "s" : ""));
         return map;
     }
 
   private:
+    /// Replaces the bits of unsigned integers by the nearest floats, and counts those that differ.
+    static std::int64_t round_integers(float* row, std::size_t count) {
+        std::int64_t rounded = 0;
+        for (std::size_t x = 0; x < count; ++x) {
+            std::uint32_t integer = 0;
+            std::memcpy(&integer, row + x, sizeof integer);
+            row[x] = static_cast<float>(integer);
+            rounded += static_cast<double>(row[x]) != integer ? 1 : 0;
+        }
+        return rounded;
+    }
+
     static void compare(const float* row, const float* other, std::size_t count, Other& result) {
         for (std::size_t x = 0; x < count; ++x) {
             const bool same = row[x] == other[x] || (std::isnan(row[x]) && std::isnan(other[x]));
@@ -124,15 +141,16 @@ class ExrMap {
         }
     }
 
-    void read_strip(const std::string& name, const std::vector<Other>& others, int first, int last,
+    void read_strip(const std::string& name, bool whole, const std::vector<Other>& others, int first, int last,
                     std::vector<std::vector<float>>& strips) {
         const Imath::Box2i window({data_.min.x, first}, {data_.max.x, last});
         const std::size_t row = sizeof(float) * (static_cast<std::size_t>(data_.max.x - data_.min.x) + 1);
         Imf::FrameBuffer frame;
-        const auto insert = [&](const std::string& channel, std::vector<float>& strip) {
-            frame.insert(channel, Imf::Slice::Make(Imf::FLOAT, strip.data(), window, sizeof(float), row));
+        const auto insert = [&](const std::string& channel, std::vector<float>& strip,
+                                Imf::PixelType type = Imf::FLOAT) {
+            frame.insert(channel, Imf::Slice::Make(type, strip.data(), window, sizeof(float), row));
         };
-        insert(name, strips[0]);
+        insert(name, strips[0], whole ? Imf::UINT : Imf::FLOAT);
         for (std::size_t k = 0; k < others.size(); ++k)
             if (!others[k].subsampled)
                 insert(others[k].name, strips[k + 1]);
@@ -191,7 +209,7 @@ HeightMap read_checked(const std::filesystem::path& path, const std::string& wan
     map.range_high = static_cast<double>((*range)[1]);
     if (std::string text = other_channels(name, others); !text.empty())
         map.repairs.push_back(std::move(text));
-    add_remarks(name, channel.type, map);
+    remark_on_subnormal(channel.type, map);
     return map;
 }
 

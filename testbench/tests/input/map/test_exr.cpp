@@ -86,7 +86,29 @@ TEST_CASE("an EXR map keeps its values for any pixel type, compression, tiling a
     CHECK(std::accumulate(map.values.begin(), map.values.end(), 0.0) == 399 * (3 + 401) / 2.0);
     CHECK(map.range_low == 3);
     CHECK(map.range_high == 401);
-    CHECK(map.repairs.size() == (pixels == Pixels::uint ? 1 : 0));
+    CHECK(map.repairs.empty());
+}
+
+TEST_CASE("unsigned integers of an EXR map that a float does not hold are counted") {
+    const TestFolder folder;
+    ExrImage image = steps();
+    image.pixels = Pixels::uint;
+    image.compression = 0;
+    image.values[5] = 16777216;
+    image.values[6] = 16777218;
+    write_exr(folder / "a.exr", image);
+    CHECK(read_height_map(folder / "a.exr").repairs.empty());
+    // Each integer is stored once in a file without compression; the writer has floats only.
+    std::string file = read_all(folder / "a.exr");
+    const std::size_t at = file.find(std::string("\2\0\0\1", 4));
+    REQUIRE(at != std::string::npos);
+    file[at] = 3;
+    write_all(folder / "a.exr", file);
+    const HeightMap map = read_height_map(folder / "a.exr");
+    REQUIRE(map.repairs.size() == 1);
+    CHECK(map.repairs.front() ==
+          "1 texel of channel Y holds unsigned integers beyond 16777216 that were rounded to 24 bits.");
+    CHECK(std::count(map.values.begin(), map.values.end(), 16777220.F) == 1);
 }
 
 TEST_CASE("the finest level of a mip map is read") {
