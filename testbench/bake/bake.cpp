@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <string>
+#include <tuple>
 
 #include "testbench/bake/displaced_surface.h"
 #include "testbench/bake/texel_centres.h"
@@ -104,6 +106,7 @@ class MeshSampler {
         size_.height = height;
         const DisplacedSurface base(mesh, size_, addressing_, LocalFrame{});
         check_work(base);
+        find_remedy(mesh);
         for (std::uint32_t k = 0; k < base.triangles(); ++k)
             sample(base.corners(k), k);
         if (std::count(owner_.begin(), owner_.end(), nobody) == 0)
@@ -121,10 +124,7 @@ class MeshSampler {
             baked_.overlaps += overlaps_[k];
         }
         if (covered.empty())
-            throw InputError(
-                "no texel's centre lies in a triangle of the base mesh's texture coordinates: bake a larger "
-                "map, or "
-                "a mesh with texture coordinates");
+            throw InputError("no texel's centre lies in a triangle of the base mesh's texture coordinates: " + remedy_);
         baked_.uncovered = owner_.size() - covered.size();
         // Texels without surface get their height before it spreads to their neighbours.
         std::vector<double> all = std::move(baked_.values);
@@ -146,6 +146,21 @@ class MeshSampler {
     }
 
   private:
+    /// What to do if no texel is covered.
+    void find_remedy(const BaseMesh& mesh) {
+        std::vector<std::string> axes;
+        for (const auto& [axis, mode, name] :
+             {std::tuple{0, addressing_.address_u, "u"}, std::tuple{1, addressing_.address_v, "v"}})
+            if (const int at = axis; mode == Addressing::clamp &&
+                                     std::any_of(mesh.vertices.begin(), mesh.vertices.end(), [at](const BaseVertex& v) {
+                                         return v.texture[at] < 0 || v.texture[at] > 1;
+                                     }))
+                axes.push_back(fmt::format("map.address_{} = \"repeat\"", name));
+        remedy_ = axes.empty() ? "bake a larger map, or a mesh with texture coordinates"
+                               : fmt::format("set {} in the base mesh's job, or move the coordinates into 0..1",
+                                             fmt::join(axes, " and "));
+    }
+
     void check_work(const DisplacedSurface& base) const {
         double work = 0;
         for (std::size_t k = 0; k < base.triangles(); ++k) {
@@ -253,6 +268,7 @@ class MeshSampler {
     HeightMap size_;  // only the size is used
     BakedMap baked_;
     std::vector<std::uint32_t> owner_;  // the triangle that gave a texel its value
+    std::string remedy_;
     std::vector<bool> inside_, overlaps_;
     std::vector<float> outside_;  // uncovered texels' distance from the nearest triangle, in texels
 };

@@ -282,6 +282,11 @@ TEST_CASE("bake: meshes that cannot be baked onto are refused") {
     for (BaseVertex& v : pointlike.vertices)
         v.texture *= 0.1;
     CHECK_THROWS_WITH(bake_over_mesh(sphere(9), pointlike, {}, 2, 2), Contains("no texel's centre lies in a triangle"));
+    for (BaseVertex& v : pointlike.vertices)
+        v.texture = 10.0 * v.texture + glm::dvec2(3, 1);
+    CHECK_THROWS_WITH(bake_over_mesh(sphere(9), pointlike, {}, 2, 2),
+                      Contains("set map.address_u = \"repeat\" and map.address_v = \"repeat\" in the base mesh's job"));
+    CHECK_THROWS_WITH(bake_over_mesh(sphere(9), pointlike, repeat_u(), 2, 2), Contains(": set map.address_v = "));
     BaseMesh endless = make_plane(1, 1, 2, 2);
     for (BaseVertex& v : endless.vertices)
         v.texture *= 1e6;

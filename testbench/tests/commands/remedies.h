@@ -349,6 +349,10 @@ inline const std::map<std::string, std::vector<Remedy>>& remedies() {
              {"quadric | sed 's/0, 0, -1/5, 0, 0/' > a.toml; bake", "or change the sampled region ([domain], --mesh)", "printf '%s\\n' '[domain]' 'x = [4.0, 6.0]' 'y = [-1.0, 1.0]' >> a.toml; bake"},
              {"quadric > a.toml; unwrapped .001; bake --mesh a.job", "bake a larger map, or a mesh with texture coordinates", "bake --mesh a.job --size 2048x2048"},
              {"quadric > a.toml; unwrapped .001; bake --mesh a.job", "or a mesh with texture coordinates", "unwrapped 1; bake --mesh a.job"},
+             {"quadric > a.toml; square 1 | sed 's/vt 1/vt 4/;s/vt 0/vt 3/' > a.obj; printf '%s\\n' '[mesh]' 'file = \"a.obj\"' > a.job; bake --mesh a.job",
+              "set {} in the base mesh's job", "echo \"$1\" | cat - a.job > b.job; bake --mesh b.job"},
+             {"quadric > a.toml; square 1 | sed 's/vt 1/vt 4/;s/vt 0/vt 3/' > a.obj; printf '%s\\n' '[mesh]' 'file = \"a.obj\"' > a.job; bake --mesh a.job",
+              "or move the coordinates into 0..1", "square 1 > a.obj; bake --mesh a.job"},
              {"quadric > a.toml; unwrapped 12; bake --mesh a.job --size 4096x4096", "bake a smaller map, or a mesh that repeats it less often", "bake --mesh a.job"},
              {"quadric > a.toml; unwrapped 12; bake --mesh a.job --size 4096x4096", "or a mesh that repeats it less often", "unwrapped 1; bake --mesh a.job --size 4096x4096"},
              // render, compare
