@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 #include <optional>
+#include <set>
 
 #include "testbench/common/error.h"
 #include "testbench/input/mesh/mesh_limits.h"
@@ -28,8 +29,8 @@ std::string_view next_word(std::string_view& text) {
 
 /// Statements of an OBJ file that are irrelevant to polygons.
 bool is_skipped(std::string_view keyword) {
-    constexpr std::array<std::string_view, 21> skipped{
-        "g",    "o",     "s",     "mg",       "usemtl",   "mtllib", "usemap",     "maplib",    "l",     "p",    "vp",
+    constexpr std::array<std::string_view, 20> skipped{
+        "g",    "o",     "mg",    "usemtl",   "mtllib",   "usemap", "maplib",     "l",         "p",     "vp",
         "curv", "curv2", "bevel", "c_interp", "d_interp", "lod",    "shadow_obj", "trace_obj", "ctech", "stech"};
     return std::find(skipped.begin(), skipped.end(), keyword) != skipped.end();
 }
@@ -51,6 +52,9 @@ class Reader {
                             "line {}: {}.",
                             unknown_, unknown_line_, unknown_keyword_));
         }
+        if (out_.normals.empty() && used_smoothing_.size() > 1)
+            out_.repairs.emplace_back(
+                "Smoothing groups (`s`) are not used: the normals are smooth everywhere. Export the mesh with normals.");
         return std::move(out_);
     }
 
@@ -121,6 +125,9 @@ class Reader {
             out_.normals.push_back(numbers(lists_[2], rest));
         } else if (keyword == "f" || keyword == "fo") {
             face(rest);
+        } else if (keyword == "s") {
+            smoothing_ = next_word(rest);
+            smoothing_ = smoothing_ == "0" ? "off" : smoothing_;
         } else if (!keyword.empty() && !is_skipped(keyword) && unknown_++ == 0) {
             unknown_keyword_ = quoted(keyword);
             unknown_line_ = line_;
@@ -149,6 +156,8 @@ class Reader {
 
     void face(std::string_view rest) {
         ObjText::Face face{out_.corners.size(), 0, line_};
+        if (!smoothing_.empty() && used_smoothing_.size() < 2)
+            used_smoothing_.insert(smoothing_);
         for (std::string_view word = next_word(rest); !word.empty(); word = next_word(rest)) {
             limit(++face.count, largest_face_corners, "corners of a face");
             const std::optional<ObjText::Corner> corner = this->corner(word);
@@ -218,6 +227,8 @@ class Reader {
     std::size_t triangles_ = 0;
     std::size_t unknown_ = 0, unknown_line_ = 0;
     std::string unknown_keyword_;
+    std::string smoothing_;                 // the group of the next faces; empty before the first
+    std::set<std::string> used_smoothing_;  // up to two
     ObjText out_;
 };
 

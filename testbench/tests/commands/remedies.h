@@ -167,6 +167,8 @@ inline const std::map<std::string, std::vector<Remedy>>& remedies() {
          }},
         {"mesh",
          {
+             {"{ fold | grep -v vn | sed -E 's,(/[0-9])/[0-9],\\1,g;s/^f 2/s off\\n&/;s/^f 1/s 1\\n&/'; } > a.obj; run mesh.file=a.obj", "Export the mesh with normals",
+              "fold > a.obj; run mesh.file=a.obj"},
              {"{ printf 'v %s\\n' '0 0 0' '-.5 .866 0' '.5 .866 0' '.866 -.5 0' '-.866 -.5 0'; printf 'vt %s\\n' '.5 .3' '.5 .5' '.7 .3' '.3 .3' '.4 .5'; "
               "printf '%s\\n' 'vn 0 0 1' 'f 1/1/1 3/2/1 2/2/1' 'f 1/1/1 4/3/1 3/2/1' 'f 1/1/1 2/2/1 5/4/1'; } > a.obj; run mesh.file=a.obj",
               "Give these triangles an area in the map.", "sed -i 's,2/2/1,2/5/1,' a.obj; run mesh.file=a.obj"},

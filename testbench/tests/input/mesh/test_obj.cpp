@@ -576,3 +576,22 @@ TEST_CASE("a mesh file of another kind is refused with a remedy") {
     }
     CHECK_NOTHROW(parse("# solid facet ply glTF\n" + square + "f 1/1 2/2 3/3\n"));
 }
+
+TEST_CASE("smoothing groups are said to be unused if normals are calculated and the groups differ") {
+    const auto repairs = [](const std::string& first, const std::string& second, const std::string& normal = "") {
+        const std::string corner = normal.empty() ? " " : "//1 ";
+        return testing::joined(parse_obj("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n" + normal + first + "\nf 1" + corner +
+                                             "2" + corner + "3" + corner + "\n" + second + "\nf 1" + corner + "3" +
+                                             corner + "4" + corner + "\n",
+                                         "a.obj")
+                                   .repairs);
+    };
+    const auto told = Contains("Smoothing groups (`s`) are not used");
+    CHECK_THAT(repairs("s 1", "s 2"), told);
+    CHECK_THAT(repairs("s 1", "s off"), told);
+    CHECK_THAT(repairs("s 0", "s 3"), told);
+    CHECK_THAT(repairs("s 1", ""), !told);
+    CHECK_THAT(repairs("s off", "s 0"), !told);
+    CHECK_THAT(repairs("", "s 1"), !told);
+    CHECK_THAT(repairs("s 1", "s 2", "vn 0 0 1\n"), !told);
+}
