@@ -107,8 +107,8 @@ TEST_CASE("hostile maps are refused, except those that can be repaired") {
     const auto folder = shared_data("hostile/" + kind);
     if (folder.empty())
         return;
-    const std::set<std::string> mended{"ambig_p2_no_final_newline.pgm", "comment_bomb.pgm",   "denormal_pixels.exr",
-                                       "missing_displayWindow.exr",     "nan_inf_pixels.exr", "pixel_type_uint.exr"};
+    const std::set<std::string> mended{"ambig_p2_no_final_newline.pgm", "comment_bomb.pgm", "denormal_pixels.exr",
+                                       "missing_displayWindow.exr", "nan_inf_pixels.exr"};
     int count = 0;
     for (const auto& entry : std::filesystem::directory_iterator(folder)) {
         ++count;
@@ -118,7 +118,7 @@ TEST_CASE("hostile maps are refused, except those that can be repaired") {
         CHECK(reads_in_little_memory(entry.path()));
         if (mended.count(name) != 0)
             CHECK(outcome.kind == Outcome::Kind::loaded_with_remark);
-        else if (name.rfind("ok_", 0) == 0)
+        else if (name.rfind("ok_", 0) == 0 || name == "pixel_type_uint.exr")
             CHECK((outcome.kind == Outcome::Kind::loaded || outcome.kind == Outcome::Kind::loaded_with_remark));
         else
             check_refusal(outcome, entry.path());
