@@ -1,6 +1,9 @@
 #include "modules/host.h"
 
+#include <string>
 #include <utility>
+
+#include "modules/datapath/preconditions.h"
 
 namespace tessera {
 
@@ -28,22 +31,55 @@ void Host::bind() {
     summed_height_table.bind(machine_.height_table.host);
 }
 
-const TableMemory& Host::table_at(std::uint64_t address) const {
-    const auto within = [&](const datapath::TableLayout& table) { return address - table.base < table.bytes(); };
-    if (within(machine_.registers().normal_map))
-        return machine_.normal_map;
-    if (within(machine_.registers().height_table))
-        return machine_.height_table;
-    return machine_.displacement_map;
+/// The tables, and last the one that takes what is at no table's address.
+std::array<Host::Table, 3> Host::tables() const {
+    const datapath::Registers& r = machine_.registers();
+    return {{{machine_.normal_map, r.normal_map},
+             {machine_.height_table, r.height_table},
+             {machine_.displacement_map, r.displacement_map}}};
+}
+
+std::size_t Host::table_at(std::uint64_t address) const {
+    const std::array<Table, 3> all = tables();
+    std::size_t k = 0;
+    while (k + 1 < all.size() && address - all[k].layout.base >= all[k].layout.bytes())
+        ++k;
+    return k;
+}
+
+void Host::refuse(const std::string& why) const {
+    SC_REPORT_ERROR("tessera/host", (std::string(name()) + ": " + why).c_str());
 }
 
 void Host::start_of_simulation() {
-    fill_tables_([this](std::uint64_t address, const unsigned char* bytes, std::size_t count) {
-        machine_.write_table(table_at(address), address, bytes, count);
+    check_inputs();
+    const std::array<Table, 3> all = tables();
+    std::array<std::uint64_t, 3> written{};
+    fill_tables_([&](std::uint64_t address, const unsigned char* bytes, std::size_t count) {
+        const std::size_t k = table_at(address);
+        written[k] += count;
+        machine_.write_table(all[k].memory, address, bytes, count);
     });
+    for (std::size_t k = 0; k < all.size() && total() > 0; ++k)
+        if (written[k] < all[k].layout.bytes())
+            refuse("FillTables wrote " + std::to_string(written[k]) + " of the " +
+                   std::to_string(all[k].layout.bytes()) + " bytes of " + all[k].memory.name());
     begin_frame();
     if (machine_.transport() == Transport::non_blocking)
         machine_.clock.wake(*this);
+}
+
+/// The registers may be changed between frames: each is checked when it begins.
+void Host::check_inputs() const {
+    const datapath::Registers& registers = machine_.registers();
+    if (total() == 0)
+        return;
+    if (const std::string excluded = datapath::excluded_register(registers); !excluded.empty())
+        refuse("the register " + excluded + " has a value that the machine's arithmetic excludes (preconditions.h)");
+    for (std::size_t k = first_; k < triangles_.size(); k += step_)
+        for (const datapath::Vertex& vertex : triangles_[k].vertices)
+            if (!datapath::fits_formats(vertex, registers.formats))
+                refuse("a value of base triangle " + std::to_string(k) + " does not fit its format (preconditions.h)");
 }
 
 /// All hosts have filled their tables: another machine's may have gone to the same place.
@@ -51,7 +87,7 @@ void Host::check_tables() {
     if (std::exchange(tables_checked_, true) || !machine_.reads_tables_elsewhere())
         return;
     fill_tables_([this](std::uint64_t address, const unsigned char* bytes, std::size_t count) {
-        machine_.holds_table(table_at(address), address, bytes, count);
+        machine_.holds_table(tables()[table_at(address)].memory, address, bytes, count);
     });
 }
 
@@ -67,6 +103,7 @@ void Host::sent_one() {
 }
 
 void Host::send_again() {
+    check_inputs();
     if (sent_ == total())
         begin_frame();
     sent_ = 0;

@@ -1,8 +1,10 @@
 #pragma once
 #include <tlm_utils/simple_initiator_socket.h>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <string>
 #include <systemc>
 #include <vector>
 
@@ -14,7 +16,8 @@ namespace tessera {
 using TableWriter = std::function<void(std::uint64_t address, const unsigned char* bytes, std::size_t count)>;
 
 /// The host CPU (paper figure 7): fills the three tables before simulation starts (Machine::write_table), then sends
-/// base triangles, one after another, to Get Triangle.
+/// base triangles, one after another, to Get Triangle. A table that is not filled, and a register or base triangle that
+/// breaks a precondition (datapath/preconditions.h), is an SC_ERROR before the frame begins.
 /// With n machines each has its own host, which sends every n-th base triangle.
 /// Get Triangle blocks it while the Triangle Queue is at its watermark. In timed mode it offers the next triangle in
 /// the cycle in which the last was accepted: the host's bus is not modelled.
@@ -37,7 +40,8 @@ class Host : public sc_core::sc_module, public CycleProcess {
 
     void bind();
 
-    /// Sends the triangles again when the simulation continues: another frame.
+    /// Sends the triangles again when the simulation continues: another frame, with the tables as they are. Call while
+    /// the machine is idle, after changes of the registers. Other tables: Machine::write_table() and tables_changed().
     void send_again();
 
     bool idle() const { return sent_ == total() && to_get_triangle.free(); }
@@ -49,9 +53,16 @@ class Host : public sc_core::sc_module, public CycleProcess {
     void start_of_simulation() override;
     void send_triangles();
     void step() override;
-    const TableMemory& table_at(std::uint64_t address) const;
+    struct Table {
+        const TableMemory& memory;
+        const datapath::TableLayout& layout;
+    };
+    std::array<Table, 3> tables() const;
+    std::size_t table_at(std::uint64_t address) const;
+    void refuse(const std::string& why) const;
     void begin_frame();
     void sent_one();
+    void check_inputs() const;
     void check_tables();
 
     Machine& machine_;

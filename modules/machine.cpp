@@ -164,6 +164,8 @@ bool Machine::watch(MemoryPort& port) {
     const std::string name = "watch_" + std::to_string(watches_.size());
     watches_.push_back(std::make_unique<AnswerWatch>(name.c_str(), port.socket.name(), answer_limit_, state));
     port.watched_by(*watches_.back());
+    if (!leads_to(units_, port))
+        port.compare_contents();
     return true;
 }
 
@@ -182,9 +184,13 @@ bool Machine::write_table(const TableMemory& table, std::uint64_t address, const
                           std::size_t count) {
     for (const TableReader& reader : readers_)
         if (reader.table == &table && !reader.port->load(address, bytes, static_cast<unsigned>(count)))
-            return report_table(*reader.port, address,
-                                "the memory that this port reads does not take the table's bytes by debug transport: "
-                                "give the memory, and what is in front of it, transport_dbg for writes; refused");
+            return report_table(
+                *reader.port, address,
+                leads_to(units_, *reader.port)
+                    ? "the machine's own memory has room for the tables of the registers with which the machine was "
+                      "built, at their addresses, and for no others; refused"
+                    : "the memory that this port reads does not take the table's bytes by debug transport: give the "
+                      "memory, and what is in front of it, transport_dbg for writes; refused");
     return true;
 }
 

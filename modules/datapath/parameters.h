@@ -19,6 +19,9 @@ struct TableLayout {
         return base + (std::uint64_t{row} * columns + column) * entry_bytes;
     }
     constexpr std::uint64_t bytes() const { return std::uint64_t{rows} * columns * entry_bytes; }
+    constexpr bool operator==(const TableLayout& other) const {
+        return base == other.base && columns == other.columns && rows == other.rows && entry_bytes == other.entry_bytes;
+    }
 };
 
 /// The texels that a table covers, from (0, 0) on: the map, or more if it clamps and the base mesh extends beyond it.

@@ -1,5 +1,6 @@
 #include "modules/device/device.h"
 
+#include <algorithm>
 #include <string>
 
 #include "modules/datapath/table_shapes.h"
@@ -31,12 +32,17 @@ void require(const char* instance, const char* member, std::uint64_t value, std:
         refuse(instance, member, value, ": must be " + std::to_string(least) + " to " + std::to_string(most));
 }
 
+constexpr unsigned most_register_cycles = 1 << 16;  // times the words of a burst: 32 bits
+
 /// Checks the design before anything is built from it; Machine checks the machine's.
 const DeviceDesign& checked(const DeviceDesign& design, const datapath::Registers& initial, const char* instance) {
-    const std::uint64_t most_texels = std::uint64_t{1}
-                                      << (initial.formats.texture.bits - 1 - initial.formats.texture.fraction);
-    require(instance, "largest_map.width", design.largest_map.width, 1, most_texels);
-    require(instance, "largest_map.height", design.largest_map.height, 1, most_texels);
+    const int integer = initial.formats.texture.bits - 1 - initial.formats.texture.fraction;
+    constexpr auto range = datapath::FormatLimits::texture_integer;
+    if (integer >= range.least && integer <= range.most) {  // Machine refuses others
+        require(instance, "largest_map.width", design.largest_map.width, 1, std::uint64_t{1} << integer);
+        require(instance, "largest_map.height", design.largest_map.height, 1, std::uint64_t{1} << integer);
+    }
+    require(instance, "register_cycles", design.register_cycles, 1, most_register_cycles);
     require(instance, "burst_bytes", design.burst_bytes, 4, 4096);
     if ((design.burst_bytes & (design.burst_bytes - 1)) != 0)
         refuse(instance, "burst_bytes", design.burst_bytes, ": must be a power of two");
@@ -90,6 +96,7 @@ void Device::start(const sc_core::sc_time& delay) {
         return;
     }
     live_ = machine;
+    machine_.clock.run_ahead(0);  // the bus depends on time
     machine_.tables_changed();
     machine_.begin_frame();
     finished_before_ = machine_.pass_or_tessellate.counts().finished;
@@ -133,6 +140,7 @@ bool Device::fetch(unsigned number, const TableMemory& table, std::uint32_t sour
     const std::uint64_t mask = (std::uint64_t{1} << bits) - 1;
     Fetched& fetched = fetched_[number];
     fetched = {&table, layout.base, {}};
+    filled_[number] = {};
     std::uint64_t length = 0;
     for (std::uint64_t done = 0; done < layout.bytes() && !stopped_; done += length) {
         const std::uint64_t address = file_.value(source) + done;
@@ -151,6 +159,8 @@ bool Device::fetch(unsigned number, const TableMemory& table, std::uint32_t sour
             fetched.bytes.insert(fetched.bytes.end(), burst_.begin(),
                                  burst_.begin() + static_cast<std::ptrdiff_t>(length));
     }
+    if (!stopped_)
+        filled_[number] = layout;
     return !stopped_;
 }
 
@@ -193,12 +203,12 @@ void Device::wait_until_empty() {
 }
 
 void Device::end_frame() {
+    reading_.rest();
+    writing_.rest();
     if ((status_ & status_resetting) != 0) {
         reset_registers();
         return;
     }
-    reading_.rest();
-    writing_.rest();
     const bool done = failure_.error == DeviceError::none;
     status_ = done ? status_done : status_error;
     raise(done ? interrupt_done : interrupt_error);

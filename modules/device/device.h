@@ -31,10 +31,10 @@ struct DeviceDesign {
 ///            aligned. It takes effect as a whole, in ascending order, or not at all:
 ///            TLM_BURST_ERROR: not whole aligned words, or a streaming width, other than 0, below the length.
 ///            TLM_BYTE_ENABLE_ERROR: a byte is not enabled. TLM_ADDRESS_ERROR: no register there. TLM_COMMAND_ERROR: a
-///            write to a read-only register. TLM_GENERIC_ERROR: no data pointer, or a write refused at present (a frame
-///            is under way, reset is held, or the read index would pass the write index). TLM_IGNORE_COMMAND: does
-///            nothing, anywhere, and succeeds. transport_dbg: reads, and writes of plain registers, without side
-///            effects. DMI: refused. `reset`: optional; while high the device is in reset.
+///            write to a read-only register, or no command of TLM-2.0. TLM_GENERIC_ERROR: no data pointer, or a write
+///            refused at present (a frame is under way, reset is held, or the read index would pass the write index).
+///            TLM_IGNORE_COMMAND: does nothing, anywhere, and succeeds. transport_dbg: reads, and writes of plain
+///            registers, without side effects. DMI: refused. `reset`: optional; while high the device is in reset.
 /// Out:       `bus`: base protocol, b_transport with annotated delay; two transfers may be under way at a time, one
 ///            reading and one writing. `interrupt`: optional; level.
 /// Frame:     accesses change a copy of the machine's registers. start checks it as a whole and passes it on: the
@@ -48,8 +48,8 @@ struct DeviceDesign {
 /// Reset:     stops a frame in the same way. The machine's units have no reset wires: the triangles in the machine go
 ///            through it, with a Generation Test that splits no further edge, so that even a recursion without end
 ///            ends. (Decision: emptying every ring, pipeline and memory queue would add a second behaviour to each.)
-///            busy and resetting stay set until the machine is empty; then all registers have their reset values. The
-///            tables keep their contents.
+///            busy and resetting stay set until the machine is empty, and while `reset` is high; then all registers have
+///            their reset values. The tables keep their contents; one that was being fetched must be fetched again.
 /// Timing:    an access takes `register_cycles` for each word, a refused one for one word. While a frame is under way
 ///            an access first waits for the initiator's delay to pass. DMA: dma_channel.h. Functional mode obeys the
 ///            global quantum; timed mode waits for each burst's delay to pass. A bus, or a table memory of a
@@ -90,6 +90,7 @@ class Device : public sc_core::sc_module, private tlm::tlm_analysis_if<datapath:
     void write(std::uint32_t offset, std::uint32_t word, const sc_core::sc_time& delay);
     void start(const sc_core::sc_time& delay);
     Failure check(const datapath::Registers& machine) const;
+    Failure check_tables_filled(const datapath::Registers& machine) const;
     Failure check_transfers(const datapath::Registers& machine) const;
 
     // the frame
@@ -140,6 +141,7 @@ class Device : public sc_core::sc_module, private tlm::tlm_analysis_if<datapath:
         std::vector<unsigned char> bytes;
     };
     std::array<Fetched, 3> fetched_;  // the tables, if the machine reads any from a memory that is not its own
+    std::array<datapath::TableLayout, 3> filled_;  // by the last complete fetch of each
 
     sc_core::sc_event started_{"started"};
     sc_core::sc_event ring_read_{"ring_read"};

@@ -1,5 +1,5 @@
 // The register side of Device: accesses, and the checks at start.
-#include "modules/datapath/edge_tests.h"
+#include "modules/datapath/preconditions.h"
 #include "modules/device/device.h"
 #include "modules/device/records.h"
 #include "modules/sockets/generic_payload.h"
@@ -7,12 +7,6 @@
 namespace tessera {
 
 namespace {
-
-/// The largest threshold of the Summed Height Test, for each unit of measure (edge_tests.h).
-constexpr std::uint64_t most_height_sum = std::uint64_t{1} << (datapath::summed_height_threshold_bits - 1);
-constexpr std::uint64_t most_height = std::uint64_t{1} << 18;
-
-constexpr std::int32_t most_ambient = 256;
 
 /// Whether a transfer begins and ends at multiples of 4, and ends at 2^64 at the latest.
 bool is_transfer(std::uint64_t address, std::uint64_t bytes) {
@@ -38,6 +32,8 @@ tlm::tlm_response_status Device::access(tlm::tlm_generic_payload& payload, const
     const unsigned length = payload.get_data_length();
     if (payload.get_command() == tlm::TLM_IGNORE_COMMAND)
         return tlm::TLM_OK_RESPONSE;
+    if (!payload.is_read() && !payload.is_write())
+        return tlm::TLM_COMMAND_ERROR_RESPONSE;
     if (!all_bytes_enabled(payload))
         return tlm::TLM_BYTE_ENABLE_ERROR_RESPONSE;
     if (length == 0 || length % 4 != 0 || first % 4 != 0 || is_stream(payload))
@@ -83,7 +79,7 @@ tlm::tlm_response_status Device::may_write(std::uint64_t offset, std::uint32_t w
 std::uint32_t Device::read(std::uint32_t offset) const {
     switch (offset) {
         case offset::control: return 0;
-        case offset::status: return status_;
+        case offset::status: return status_ | (reset_held() ? status_busy | status_resetting : 0);
         case offset::interrupt: return pending_interrupts_;
         case offset::error: return static_cast<std::uint32_t>(failure_.error);
         case offset::error_address: return static_cast<std::uint32_t>(failure_.address);
@@ -134,7 +130,8 @@ unsigned Device::transport_dbg(tlm::tlm_generic_payload& payload) {
         const auto offset = static_cast<std::uint32_t>(first + moved);
         if (payload.is_read())
             datapath::store_word(read(offset), data);
-        else if (payload.is_write() && field->access == RegisterAccess::read_write && !field->while_busy && !busy())
+        else if (payload.is_write() && field->access == RegisterAccess::read_write && !field->while_busy && !busy() &&
+                 !reset_held())
             file_.set_word(offset, datapath::load_word(data));
         else
             break;
@@ -150,7 +147,6 @@ Device::Failure Device::check(const datapath::Registers& machine) const {
         return at(DeviceError::bad_map_size, "map.width");
     if (machine.map.height == 0 || machine.map.height > design_.largest_map.height)
         return at(DeviceError::bad_map_size, "map.height");
-    const bool ranks = machine.formats.height_test == datapath::HeightTest::rank;
     if (functions_of(machine.formats.height_test).covers_more) {
         const std::string table = functions_of(machine.formats.height_test).table();
         if (machine.covered.columns == 0 || machine.covered.columns > design_.largest_map.width)
@@ -158,15 +154,23 @@ Device::Failure Device::check(const datapath::Registers& machine) const {
         if (machine.covered.rows == 0 || machine.covered.rows > design_.largest_map.height)
             return at(DeviceError::bad_map_size, (table + ".rows").c_str());
     }
-    if (machine.triangulation > (ranks ? datapath::Triangulation::greatest_rank : datapath::Triangulation::second))
-        return at(DeviceError::bad_value, "triangulation");
-    if (machine.formats.height_test == datapath::HeightTest::summed_height &&
-        machine.tests.height_threshold() >
-            (machine.tests.summed_height_unit == datapath::SummedHeightUnit::sum ? most_height_sum : most_height))
-        return at(DeviceError::bad_value, "tests.summed_height_threshold");
-    if (machine.light.ambient > most_ambient)
-        return at(DeviceError::bad_value, "light.ambient");
-    return check_transfers(machine);
+    if (const std::string excluded = datapath::excluded_register(machine); !excluded.empty())
+        return at(DeviceError::bad_value, excluded.c_str());
+    const Failure unfilled = check_tables_filled(machine);
+    return unfilled.error != DeviceError::none ? unfilled : check_transfers(machine);
+}
+
+/// Of a memory that is not the machine's, the device cannot know who fills it.
+Device::Failure Device::check_tables_filled(const datapath::Registers& machine) const {
+    const std::array layouts{machine.displacement_map, machine.normal_map, machine.height_table};
+    if (machine_.reads_tables_elsewhere())
+        return {};
+    for (std::size_t k = 0; k < layouts.size(); ++k) {
+        const bool read = k != 2 || machine.tests.summed_height_test;
+        if (read && (file_.value(offset::fetch) >> k & 1) == 0 && !(filled_[k] == layouts[k]))
+            return {DeviceError::no_table, offset::fetch};
+    }
+    return {};
 }
 
 Device::Failure Device::check_transfers(const datapath::Registers& machine) const {

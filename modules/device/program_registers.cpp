@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "modules/datapath/preconditions.h"
 #include "modules/device/register_map.h"
 
 namespace tessera {
@@ -16,6 +17,8 @@ bool is_of_the_design(const DeviceRegister& r) {
 }  // namespace
 
 int program_registers(const tessera_platform& platform, const datapath::Registers& registers) {
+    if (!datapath::excluded_register(registers).empty())
+        return TESSERA_BAD_VALUE;
     const std::vector<DeviceRegister> map = register_map(registers, {});
     for (const DeviceRegister& r : map) {
         std::uint32_t value = 0;

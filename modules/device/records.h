@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "modules/datapath/pack_triangle.h"
+#include "modules/datapath/preconditions.h"
 #include "modules/datapath/vertex.h"
 #include "modules/sockets/items.h"
 
@@ -87,19 +88,6 @@ constexpr void write_base_triangle(const datapath::Triangle& triangle, unsigned 
         describe_base_vertex(vertex, writer);
 }
 
-/// The preconditions of the machine's arithmetic: every value fits its format, and no direction component exceeds 1.0.
-constexpr bool fits_formats(const datapath::Vertex& v, const datapath::Formats& f) {
-    const std::int64_t one = std::int64_t{1} << f.normal.fraction;
-    const std::uint64_t most_texels = std::uint64_t{1} << (f.texture.bits - 1);
-    for (const std::int64_t p : {v.position.x, v.position.y, v.position.z})
-        if (p < f.position.lowest || p > f.position.highest)
-            return false;
-    for (const std::int64_t n : {v.normal.x, v.normal.y, v.normal.z, v.tangent.x, v.tangent.y, v.tangent.z})
-        if (n < -one || n > one)
-            return false;
-    return v.texture.u <= most_texels && v.texture.v <= most_texels && (v.handedness == 1 || v.handedness == -1);
-}
-
 /// Returns false if a value is beyond its format.
 [[nodiscard]] constexpr bool read_base_triangle(const unsigned char* bytes, const datapath::Formats& formats,
                                                 datapath::Triangle& triangle) {
@@ -107,7 +95,7 @@ constexpr bool fits_formats(const datapath::Vertex& v, const datapath::Formats& 
     bool all_fit = true;
     for (datapath::Vertex& vertex : triangle.vertices) {
         describe_base_vertex(vertex, reader);
-        all_fit = all_fit && fits_formats(vertex, formats);
+        all_fit = all_fit && datapath::fits_formats(vertex, formats);
     }
     return all_fit && reader.fits();
 }

@@ -93,6 +93,7 @@ enum class DeviceError : std::uint8_t {
     queue_full,
     machine_stopped,
     table_memory,
+    no_table,
 };
 
 struct ErrorMeaning {
@@ -100,7 +101,7 @@ struct ErrorMeaning {
     const char* name;
     const char* meaning;
 };
-inline constexpr std::array<ErrorMeaning, 12> error_meanings{{
+inline constexpr std::array<ErrorMeaning, 13> error_meanings{{
     {DeviceError::none, "none", "no error"},
     {DeviceError::bad_value, "bad_value", "refused: an invalid register value; the register's offset"},
     {DeviceError::bad_map_size, "bad_map_size",
@@ -120,6 +121,8 @@ inline constexpr std::array<ErrorMeaning, 12> error_meanings{{
     {DeviceError::table_memory, "table_memory",
      "stopped: a memory outside the machine refused a table, or was changed by another; the bus address of the refused "
      "data, or 0"},
+    {DeviceError::no_table, "no_table",
+     "refused: a table that is not to be fetched and never was, whole and in this size; the register's offset"},
 }};
 
 /// Columns and rows of the largest map that the table memories hold.

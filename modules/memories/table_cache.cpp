@@ -135,7 +135,9 @@ bool TableCache::get_direct_mem_ptr(int, MemoryRequest& request, tlm::tlm_dmi& d
 }
 
 unsigned TableCache::transport_dbg(int, MemoryRequest& request) {
-    return table.socket->transport_dbg(request);
+    if (request.command != tlm::TLM_WRITE_COMMAND)
+        return table.socket->transport_dbg(request);
+    return table.load(request.address[0], request.data, request.bytes()) ? request.bytes() : 0;
 }
 
 std::string TableCache::describe_contents() const {

@@ -36,6 +36,26 @@ void MemoryPort::check_response(const MemoryRequest& request) const {
     SC_REPORT_ERROR("tessera/memory", message.str().c_str());
 }
 
+void MemoryPort::check_contents(const MemoryRequest& request) const {
+    for (unsigned k = 0; request.command == tlm::TLM_READ_COMMAND && k < request.count; ++k) {
+        const std::uint64_t offset = request.address[k] - loaded_from_;
+        if (offset >= loaded_.size())
+            continue;
+        const unsigned char* const entry = request.entry(k);
+        const std::size_t count = std::min<std::size_t>(request.entry_bytes, loaded_.size() - offset);
+        if (std::equal(entry, entry + count, loaded_.begin() + static_cast<std::ptrdiff_t>(offset)))
+            continue;
+        std::ostringstream message;
+        message
+            << socket.name()
+            << ": the memory that this port reads answers with other bytes than were written to it by debug transport: "
+               "lead debug accesses where transactions go, and give each machine and table a memory, or addresses, of "
+               "its own; read at address 0x"
+            << std::hex << request.address[k];
+        SC_REPORT_ERROR("tessera/memory", message.str().c_str());
+    }
+}
+
 void MemoryPort::read_by_transactions(const std::uint64_t* addresses, unsigned count, std::uint64_t* entries,
                                       sc_core::sc_time& delay) {
     for (unsigned k = 0; k < count; ++k) {
@@ -47,6 +67,8 @@ void MemoryPort::read_by_transactions(const std::uint64_t* addresses, unsigned c
         if (watch_ != nullptr)
             watch_->end(watched);
         check_response(request);
+        if (compares_)
+            check_contents(request);
         if (use_direct_memory_ && request.dmi_allowed && direct_bytes_ == 0)
             ask_for_direct_memory(request);
         entries[k] = 0;
@@ -130,11 +152,22 @@ tlm::tlm_sync_enum MemoryPort::nb_transport_bw(MemoryRequest& request, tlm::tlm_
     check_response(request);
     if (watch_ != nullptr)
         watch_->end(slots_.at(answered_).watched);
+    if (compares_)
+        check_contents(request);
     ++answered_;
     return tlm::TLM_COMPLETED;
 }
 
 bool MemoryPort::load(std::uint64_t address, const unsigned char* bytes, unsigned count) {
+    if (compares_) {
+        if (loaded_.empty())
+            loaded_from_ = address;
+        const std::uint64_t first = std::min(loaded_from_, address);
+        loaded_.insert(loaded_.begin(), loaded_from_ - first, 0);
+        loaded_from_ = first;
+        loaded_.resize(std::max<std::size_t>(loaded_.size(), address - first + count));
+        std::copy_n(bytes, count, loaded_.begin() + static_cast<std::ptrdiff_t>(address - first));
+    }
     std::vector<unsigned char> data(count);
     MemoryRequest request{tlm::TLM_READ_COMMAND, 1, count, {address}, data.data()};
     if (socket->transport_dbg(request) == count && std::equal(data.begin(), data.end(), bytes))

@@ -138,6 +138,9 @@ class MemoryPort {
 
     /// Every request from now on is watched; `watch` must outlive the last.
     void watched_by(AnswerWatch& watch) { watch_ = &watch; }
+    /// From now on an answer with other bytes than load() has written is an SC_ERROR: debug accesses may lead elsewhere
+    /// than transactions.
+    void compare_contents() { compares_ = true; }
 
   private:
     struct Slot {
@@ -149,6 +152,7 @@ class MemoryPort {
     void read_by_transactions(const std::uint64_t* addresses, unsigned count, std::uint64_t* entries,
                               sc_core::sc_time& delay);
     void check_response(const MemoryRequest& request) const;
+    void check_contents(const MemoryRequest& request) const;
     void ask_for_direct_memory(MemoryRequest& request);
     void invalidate_direct_mem_ptr(sc_dt::uint64, sc_dt::uint64) { direct_bytes_ = 0; }
     void offer(tlm::tlm_command command, const std::uint64_t* addresses, unsigned count);
@@ -174,6 +178,9 @@ class MemoryPort {
     const sc_core::sc_object* memory_ = nullptr;
     bool interposed_ = true;
     AnswerWatch* watch_ = nullptr;
+    std::uint64_t loaded_from_ = 0;
+    std::vector<unsigned char> loaded_;  // if it compares
+    bool compares_ = false;
 };
 
 }  // namespace tessera

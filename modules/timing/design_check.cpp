@@ -67,7 +67,9 @@ void check_formats(const Design& design, const datapath::Formats& f, std::string
     // With one integer bit, which a job refuses, normals of 1.0 saturate, and are counted.
     check_format("normal.fraction", f.normal.fraction, {0, f.normal.bits - 1}, faults);
     check_format("texture.fraction", f.texture.fraction, Limits::texture_fraction, faults);
-    check_format("texture.bits", f.texture.bits - 1 - f.texture.fraction, Limits::texture_integer, faults);
+    const int no_integer = 1 + f.texture.fraction;
+    check_format("texture.bits", f.texture.bits,
+                 {no_integer + Limits::texture_integer.least, no_integer + Limits::texture_integer.most}, faults);
     check_format("tex_coord_fraction", f.tex_coord_fraction, {0, f.texture.fraction}, faults);
     check_format("displacement.bits", f.displacement.bits, Limits::displacement_bits, faults);
     check_format("summed_height.bits", f.summed_height.bits, Limits::summed_height_bits, faults);
@@ -96,6 +98,9 @@ std::string design_faults(const Design& design, const datapath::Formats& formats
             faults += "Design::" + it.member + " = " + std::to_string(it.value) + ": must be " +
                       std::to_string(it.least) + " to " + std::to_string(it.most) +
                       (it.unit == "-" ? "" : ' ' + it.unit) + " (" + it.meaning + ")\n";
+    if (design.transport != Transport::blocking && design.transport != Transport::non_blocking)
+        faults += "Design::transport = " + std::to_string(static_cast<int>(design.transport)) +
+                  ": must be Transport::blocking or Transport::non_blocking\n";
     check_formats(design, formats, faults);
     if (!faults.empty())
         return faults;

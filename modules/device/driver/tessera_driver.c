@@ -23,9 +23,25 @@ static int write_register(struct tessera_driver* driver, uint32_t offset, uint32
                : TESSERA_BUS;
 }
 
-static int write_long(struct tessera_driver* driver, uint32_t offset, uint64_t value) {
-    const int result = write_register(driver, offset, (uint32_t)(value & 0xffffffffu));
-    return result != TESSERA_OK ? result : write_register(driver, offset + 4, (uint32_t)(value >> 32));
+static int write_value(struct tessera_driver* driver, const struct register_info* info, uint64_t value) {
+    const int result = write_register(driver, info->offset, (uint32_t)(value & 0xffffffffu));
+    return result != TESSERA_OK || info->words == 1 ? result
+                                                    : write_register(driver, info->offset + 4, (uint32_t)(value >> 32));
+}
+
+/* Takes up the ring of the device's registers. */
+static int take_up_ring(struct tessera_driver* driver) {
+    uint32_t low = 0, high = 0;
+    int result = read_register(driver, TESSERA_RING_ADDRESS, &low);
+    if (result == TESSERA_OK)
+        result = read_register(driver, TESSERA_RING_ADDRESS + 4, &high);
+    if (result == TESSERA_OK)
+        result = read_register(driver, TESSERA_RING_SIZE, &driver->ring_size);
+    if (result == TESSERA_OK)
+        result = read_register(driver, TESSERA_RING_READ_INDEX, &driver->read_index);
+    driver->ring_address = (uint64_t)high << 32 | low;
+    driver->ring_place = driver->ring_size == 0 ? 0 : driver->read_index % driver->ring_size;
+    return result;
 }
 
 /* Until none of `bits` is set in status. */
@@ -43,32 +59,40 @@ static int poll(struct tessera_driver* driver, uint32_t bits, uint32_t polls, ui
 int tessera_init(struct tessera_driver* driver, const struct tessera_platform* platform) {
     uint32_t id = 0, version = 0;
     driver->platform = *platform;
-    driver->ring_address = 0;
-    driver->ring_size = driver->ring_place = driver->read_index = 0;
     if (read_register(driver, TESSERA_ID, &id) != TESSERA_OK ||
         read_register(driver, TESSERA_VERSION, &version) != TESSERA_OK)
         return TESSERA_BUS;
-    return id == 0x53534554u && version >> 16 == 1 ? TESSERA_OK : TESSERA_NO_DEVICE;
+    return id == 0x53534554u && version >> 16 == 1 ? take_up_ring(driver) : TESSERA_NO_DEVICE;
 }
 
 int tessera_reset(struct tessera_driver* driver, uint32_t polls) {
     uint32_t status = 0;
-    const int result = write_register(driver, TESSERA_CONTROL, TESSERA_CONTROL_RESET);
-    if (result != TESSERA_OK)
-        return result;
-    driver->ring_size = driver->ring_place = driver->read_index = 0;
-    return poll(driver, TESSERA_STATUS_BUSY, polls, &status);
+    int result = write_register(driver, TESSERA_CONTROL, TESSERA_CONTROL_RESET);
+    if (result == TESSERA_OK)
+        result = poll(driver, TESSERA_STATUS_BUSY, polls, &status);
+    return result != TESSERA_OK ? result : take_up_ring(driver);
 }
 
 int tessera_set(struct tessera_driver* driver, enum tessera_register number, int64_t value) {
     const struct register_info* info = NULL;
+    int64_t before = 0, stored = 0;
+    int result;
     if ((unsigned)number >= TESSERA_REGISTERS)
         return TESSERA_NO_REGISTER;
     info = &register_infos[number];
     if (!info->writable)
         return TESSERA_READ_ONLY;
-    return info->words == 2 ? write_long(driver, info->offset, (uint64_t)value)
-                            : write_register(driver, info->offset, (uint32_t)((uint64_t)value & 0xffffffffu));
+    if (number == TESSERA_REGISTER_CONTROL || number == TESSERA_REGISTER_INTERRUPT)
+        return write_register(driver, info->offset, (uint32_t)value);
+    result = tessera_get(driver, number, &before);
+    if (result == TESSERA_OK)
+        result = write_value(driver, info, (uint64_t)value);
+    if (result == TESSERA_OK)
+        result = tessera_get(driver, number, &stored);
+    if (result != TESSERA_OK || stored == value)
+        return result;
+    result = write_value(driver, info, (uint64_t)before);
+    return result != TESSERA_OK ? result : TESSERA_BAD_VALUE;
 }
 
 int tessera_get(struct tessera_driver* driver, enum tessera_register number, int64_t* value) {
@@ -93,42 +117,45 @@ const char* tessera_register_name(enum tessera_register number) {
 
 int tessera_set_tables(struct tessera_driver* driver, uint64_t displacement_map, uint64_t normal_map,
                        uint64_t summed_height_table) {
-    int result = write_long(driver, TESSERA_DISPLACEMENT_MAP_ADDRESS, displacement_map);
+    int result = tessera_set(driver, TESSERA_REGISTER_DISPLACEMENT_MAP_ADDRESS, (int64_t)displacement_map);
     if (result == TESSERA_OK)
-        result = write_long(driver, TESSERA_NORMAL_MAP_ADDRESS, normal_map);
-    return result != TESSERA_OK ? result : write_long(driver, TESSERA_SUMMED_HEIGHT_TABLE_ADDRESS, summed_height_table);
+        result = tessera_set(driver, TESSERA_REGISTER_NORMAL_MAP_ADDRESS, (int64_t)normal_map);
+    return result != TESSERA_OK
+               ? result
+               : tessera_set(driver, TESSERA_REGISTER_SUMMED_HEIGHT_TABLE_ADDRESS, (int64_t)summed_height_table);
 }
 
 int tessera_fetch_tables(struct tessera_driver* driver, uint32_t tables) {
-    return write_register(driver, TESSERA_FETCH, tables);
+    return tessera_set(driver, TESSERA_REGISTER_FETCH, tables);
 }
 
 int tessera_set_triangles(struct tessera_driver* driver, uint64_t address, uint32_t count) {
-    const int result = write_long(driver, TESSERA_TRIANGLES_ADDRESS, address);
-    return result != TESSERA_OK ? result : write_register(driver, TESSERA_TRIANGLES_COUNT, count);
+    const int result = tessera_set(driver, TESSERA_REGISTER_TRIANGLES_ADDRESS, (int64_t)address);
+    return result != TESSERA_OK ? result : tessera_set(driver, TESSERA_REGISTER_TRIANGLES_COUNT, count);
 }
 
 int tessera_set_ring(struct tessera_driver* driver, uint64_t address, uint32_t records) {
-    int result = write_long(driver, TESSERA_RING_ADDRESS, address);
-    if (result == TESSERA_OK)
-        result = write_register(driver, TESSERA_RING_SIZE, records);
-    if (result == TESSERA_OK) {
-        driver->ring_address = address;
-        driver->ring_size = records;
-    }
-    return result;
+    const int result = tessera_set(driver, TESSERA_REGISTER_RING_ADDRESS, (int64_t)address);
+    return result != TESSERA_OK ? result : tessera_set(driver, TESSERA_REGISTER_RING_SIZE, records);
+}
+
+/* Whether a frame with this error was refused at its start, and changed nothing. */
+static int is_refusal(int error) {
+    return (error >= TESSERA_ERROR_BAD_VALUE && error <= TESSERA_ERROR_BAD_RING_SIZE) ||
+           error == TESSERA_ERROR_NO_TABLE;
 }
 
 int tessera_start(struct tessera_driver* driver) {
     uint32_t status = 0;
-    int result = write_register(driver, TESSERA_CONTROL, TESSERA_CONTROL_START);
-    if (result != TESSERA_OK)
-        return result;
-    driver->ring_place = driver->read_index = 0;
-    result = read_register(driver, TESSERA_STATUS, &status);
+    int error = 0, result = write_register(driver, TESSERA_CONTROL, TESSERA_CONTROL_START);
+    if (result == TESSERA_OK)
+        result = read_register(driver, TESSERA_STATUS, &status);
     if (result == TESSERA_OK && (status & TESSERA_STATUS_ERROR) != 0)
-        result = tessera_last_error(driver, NULL);
-    return result;
+        error = tessera_last_error(driver, NULL);
+    if (result != TESSERA_OK || is_refusal(error))
+        return result != TESSERA_OK ? result : error;
+    result = take_up_ring(driver);
+    return result != TESSERA_OK ? result : error;
 }
 
 int tessera_status(struct tessera_driver* driver, uint32_t* status) {
@@ -138,11 +165,13 @@ int tessera_status(struct tessera_driver* driver, uint32_t* status) {
 int tessera_wait(struct tessera_driver* driver, uint32_t polls) {
     uint32_t status = 0;
     const int result = poll(driver, TESSERA_STATUS_BUSY, polls, &status);
-    return result == TESSERA_OK && (status & TESSERA_STATUS_ERROR) != 0 ? tessera_last_error(driver, NULL) : result;
+    if (result != TESSERA_OK || (status & TESSERA_STATUS_DONE) != 0)
+        return result;
+    return (status & TESSERA_STATUS_ERROR) != 0 ? tessera_last_error(driver, NULL) : TESSERA_NO_FRAME;
 }
 
 int tessera_enable_interrupts(struct tessera_driver* driver, uint32_t interrupts) {
-    return write_register(driver, TESSERA_INTERRUPT_ENABLE, interrupts);
+    return tessera_set(driver, TESSERA_REGISTER_INTERRUPT_ENABLE, interrupts);
 }
 
 int tessera_acknowledge(struct tessera_driver* driver, uint32_t* interrupts) {
@@ -151,10 +180,22 @@ int tessera_acknowledge(struct tessera_driver* driver, uint32_t* interrupts) {
 }
 
 int tessera_ring_count(struct tessera_driver* driver, uint32_t* count) {
-    uint32_t write_index = 0;
-    const int result = read_register(driver, TESSERA_RING_WRITE_INDEX, &write_index);
-    *count = write_index - driver->read_index;
+    uint32_t write_index = 0, read_index = 0;
+    int result = read_register(driver, TESSERA_RING_READ_INDEX, &read_index);
+    if (result == TESSERA_OK)
+        result = read_register(driver, TESSERA_RING_WRITE_INDEX, &write_index);
+    *count = write_index - read_index;
+    if (read_index != driver->read_index && driver->ring_size > 0) { /* after a reset, or set by software */
+        driver->read_index = read_index;
+        driver->ring_place = read_index % driver->ring_size;
+    }
     return result;
+}
+
+/* Why a record cannot be read. */
+static int no_record(struct tessera_driver* driver) {
+    uint32_t count = 0;
+    return tessera_ring_count(driver, &count) == TESSERA_OK && count == 0 ? TESSERA_EMPTY : TESSERA_BUS;
 }
 
 int tessera_ring_pop(struct tessera_driver* driver, struct tessera_finished_triangle* triangle) {
@@ -162,7 +203,7 @@ int tessera_ring_pop(struct tessera_driver* driver, struct tessera_finished_tria
     const uint64_t address = driver->ring_address + (uint64_t)driver->ring_place * sizeof bytes;
     size_t vertex, word;
     if (driver->platform.read_memory(driver->platform.context, address, bytes, sizeof bytes) != 0)
-        return TESSERA_BUS;
+        return no_record(driver);
     for (vertex = 0; vertex < 3; ++vertex) {
         uint32_t words[6];
         struct tessera_finished_vertex* v = &triangle->vertices[vertex];
@@ -177,8 +218,11 @@ int tessera_ring_pop(struct tessera_driver* driver, struct tessera_finished_tria
         v->v = words[4];
         v->light = words[5];
     }
+    if (driver->platform.write32(driver->platform.context, TESSERA_RING_READ_INDEX, driver->read_index + 1) != 0)
+        return no_record(driver);
+    ++driver->read_index;
     driver->ring_place = driver->ring_place + 1 == driver->ring_size ? 0 : driver->ring_place + 1;
-    return write_register(driver, TESSERA_RING_READ_INDEX, ++driver->read_index);
+    return TESSERA_OK;
 }
 
 int tessera_last_error(struct tessera_driver* driver, uint64_t* address) {
@@ -199,9 +243,12 @@ const char* tessera_text(int result) {
                                       "still busy",
                                       "a read-only register",
                                       "no such register",
-                                      "refused: a frame or a reset is in progress"};
+                                      "refused: a frame or a reset is in progress",
+                                      "no frame was started, or it was reset",
+                                      "no triangle waits in the ring",
+                                      "the value does not fit the register"};
     static const char* const of_device[TESSERA_ERRORS] = {TESSERA_ERROR_TEXTS};
     if (result > 0 && result < TESSERA_ERRORS)
         return of_device[result];
-    return result <= 0 && result >= TESSERA_BUSY ? own[-result] : "unknown error";
+    return result <= 0 && result >= TESSERA_BAD_VALUE ? own[-result] : "unknown error";
 }

@@ -22,9 +22,9 @@ struct tessera_platform {
 
 struct tessera_driver {
     struct tessera_platform platform;
-    uint64_t ring_address;
-    uint32_t ring_size;  /* records */
-    uint32_t ring_place; /* of the next record to be read */
+    uint64_t ring_address; /* of the last frame */
+    uint32_t ring_size;    /* records */
+    uint32_t ring_place;   /* of the next record to be read */
     uint32_t read_index;
 };
 
@@ -36,10 +36,13 @@ enum tessera_result {
     TESSERA_TIMEOUT = -3,     /* still busy after all polls */
     TESSERA_READ_ONLY = -4,   /* such a register cannot be set */
     TESSERA_NO_REGISTER = -5, /* there is none of that number */
-    TESSERA_BUSY = -6         /* refused: a frame, or a reset, is under way */
+    TESSERA_BUSY = -6,        /* refused: a frame, or a reset, is under way */
+    TESSERA_NO_FRAME = -7,    /* no frame was started, or it was reset */
+    TESSERA_EMPTY = -8,       /* no triangle waits in the ring */
+    TESSERA_BAD_VALUE = -9    /* does not fit the register, which keeps its value */
 };
 
-/* Identifies the device. To be called first; it changes nothing. */
+/* Identifies the device, and takes up its ring where it is. To be called first; it changes nothing. */
 int tessera_init(struct tessera_driver* driver, const struct tessera_platform* platform);
 /* Resets the device and waits until it is empty. */
 int tessera_reset(struct tessera_driver* driver, uint32_t polls);
@@ -55,13 +58,15 @@ int tessera_set_tables(struct tessera_driver* driver, uint64_t displacement_map,
 /* Which tables the next frames fetch: TESSERA_FETCH_... */
 int tessera_fetch_tables(struct tessera_driver* driver, uint32_t tables);
 int tessera_set_triangles(struct tessera_driver* driver, uint64_t address, uint32_t count);
+/* From the next start on; records of the last frame that are not read by then are lost. */
 int tessera_set_ring(struct tessera_driver* driver, uint64_t address, uint32_t records);
 
-/* Begins a frame. A frame that the device refuses gives its error at once. */
+/* Begins a frame. A frame that the device refuses gives its error at once; the last one's records may still be read. */
 int tessera_start(struct tessera_driver* driver);
 /* TESSERA_STATUS_...  */
 int tessera_status(struct tessera_driver* driver, uint32_t* status);
-/* Until the frame is complete, or has failed: the device's error. The ring must be large enough, or read meanwhile. */
+/* Until the frame is complete, or has failed: the device's error, or TESSERA_NO_FRAME. The ring must be large enough, or
+ * read meanwhile. */
 int tessera_wait(struct tessera_driver* driver, uint32_t polls);
 
 /* TESSERA_INTERRUPT_... */
@@ -71,7 +76,7 @@ int tessera_acknowledge(struct tessera_driver* driver, uint32_t* interrupts);
 
 /* Finished triangles that wait in the ring. */
 int tessera_ring_count(struct tessera_driver* driver, uint32_t* count);
-/* Reads the oldest, of which there must be one, and frees its place. */
+/* Reads the oldest, and frees its place. */
 int tessera_ring_pop(struct tessera_driver* driver, struct tessera_finished_triangle* triangle);
 
 /* Why the last frame was refused or stopped, and where. */

@@ -142,8 +142,9 @@ enum tessera_error {
     TESSERA_ERROR_QUEUE_FULL = 9,  /* stopped: the waiting triangles would not fit the Triangle Queue's memory; 0 */
     TESSERA_ERROR_MACHINE_STOPPED = 10,  /* stopped permanently: the machine's clock has halted, and a reset has no effect; 0 */
     TESSERA_ERROR_TABLE_MEMORY = 11,  /* stopped: a memory outside the machine refused a table, or was changed by another; the bus address of the refused data, or 0 */
+    TESSERA_ERROR_NO_TABLE = 12,  /* refused: a table that is not to be fetched and never was, whole and in this size; the register's offset */
 };
-#define TESSERA_ERRORS 12
+#define TESSERA_ERRORS 13
 #define TESSERA_ERROR_TEXTS \
     "no error", \
     "refused: an invalid register value; the register's offset", \
@@ -156,7 +157,8 @@ enum tessera_error {
     "stopped: bus error on a write to the ring; the address", \
     "stopped: the waiting triangles would not fit the Triangle Queue's memory; 0", \
     "stopped permanently: the machine's clock has halted, and a reset has no effect; 0", \
-    "stopped: a memory outside the machine refused a table, or was changed by another; the bus address of the refused data, or 0"
+    "stopped: a memory outside the machine refused a table, or was changed by another; the bus address of the refused data, or 0", \
+    "refused: a table that is not to be fetched and never was, whole and in this size; the register's offset"
 
 /* Records in bus memory: little-endian words. */
 struct tessera_base_vertex {

@@ -428,9 +428,9 @@ std::string remark_on_patches(const HeightMap& map, const Between& rest, bool no
         patches.push_back({value, rules});
     neighbours.look_at(patches, inner_value.far * span);
     constexpr std::ptrdiff_t most_inner = 1;  // more are flat roofs
-    std::vector<const Rule*> met;
-    for (const Patch& patch : patches)
-        met.push_back(neighbours.rule_met(patch, span));
+    std::vector<const Rule*> met(patches.size());
+    std::transform(patches.begin(), patches.end(), met.begin(),
+                   [&](const Patch& patch) { return neighbours.rule_met(patch, span); });
     const bool roofs = std::count(met.begin(), met.end(), &inner_value) > most_inner;
     std::vector<std::string> texts;
     for (std::size_t k = 0; k < patches.size(); ++k) {

@@ -141,7 +141,7 @@ TEST_CASE("saturations: screen positions are counted as with a division in doubl
 TEST_CASE("saturations: view distances are counted as with 128-bit integers") {
     MachineSetup setup = setup_of(small_job());
     datapath::Format& format = setup.registers.formats.view_distance;
-    format.fraction += 6;  // more than the host would choose
+    format.fraction = setup.registers.formats.position.fraction;  // more than the host would choose
     const auto& row = setup.registers.transform.row_w;
     const int shift =
         datapath::TransformParameters::matrix_fraction + setup.registers.formats.position.fraction - format.fraction;
@@ -166,8 +166,10 @@ TEST_CASE("saturations: normals beyond a format of one integer bit are counted")
             v.normal = {0, 0, 32767};
             v.tangent = {32767, 0, 0};
         }
-    setup.registers.transform.normal_rows = {{{0, 0, 32768}, {0, 1000, 0}, {0, 0, 60000}}};
     Simulation simulation(setup, 1'000'000, 100'000);
+    sc_core::sc_start(sc_core::SC_ZERO_TIME);
+    // beyond what the registers hold, so that one component suffices
+    setup.registers.transform.normal_rows = {{{0, 0, 32768}, {0, 1000, 0}, {0, 0, 60000}}};
     REQUIRE(simulation.run().empty());
     const Saturations counted = simulation.machine.saturations();
     const std::uint64_t edges = simulation.machine.edges_tested(), base = setup.base_triangles.size();

@@ -333,7 +333,7 @@ struct Wrong {
 
 const CaseTable wrong_frames(
     "the set-up check of a job with an atlas notices ",
-    {Wrong{"a tangent that is too long", "tangent", [](BaseMesh& m) { m.vertices[0].tangent *= 1.001; }},
+    {Wrong{"a tangent that is too short", "tangent", [](BaseMesh& m) { m.vertices[0].tangent *= 0.999; }},
      {"a tangent turned by a tenth of a degree", "tangent",
       [](BaseMesh& m) {
           BaseVertex& v = m.vertices[3];

@@ -260,6 +260,6 @@ TEST_CASE("a table's row that no memory accepts is an error") {
     host.bind();
     machine.lighting.to_rasteriser.bind(rasteriser.from_lighting);
     CHECK_THAT(error_of([] { sc_core::sc_start(); }),
-               Contains("displace_vertex.displacement_map: the memory that this port reads does not take the table's "
-                        "bytes by debug transport"));
+               Contains("displace_vertex.displacement_map: the machine's own memory has room for the tables of the "
+                        "registers with which the machine was built"));
 }

@@ -75,6 +75,7 @@ std::map<std::string, std::string> functions() {
 
 /// Functions of the model without hardware.
 const std::set<std::string> without_hardware{"entry_bytes",
+                                             "fits_formats",
                                              "packed_triangle_bytes",
                                              "stream_widths",
                                              "bits_for",

@@ -173,14 +173,15 @@ inline void set_frame(tessera_driver& driver, const MachineSetup& setup, const F
     set_places(driver, places);
 }
 
-/// Requires that registers have their reset values.
-inline void expect_reset(tessera_driver& driver, const datapath::Registers& initial) {
+/// Requires that registers have their reset values; held: by the input.
+inline void expect_reset(tessera_driver& driver, const datapath::Registers& initial, bool held = false) {
     for (const DeviceRegister& r : register_map(initial, {64, 64})) {
         INFO(r.name);
         std::int64_t value = 0;
         REQUIRE(tessera_get(&driver, number_of(r.offset), &value) == TESSERA_OK);
         const std::uint64_t mask = r.bits == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << r.bits) - 1;
-        CHECK((static_cast<std::uint64_t>(value) & mask) == r.reset);
+        const bool busy = held && r.offset == offset::status;
+        CHECK((static_cast<std::uint64_t>(value) & mask) == (busy ? status_busy | status_resetting : r.reset));
     }
 }
 

@@ -290,6 +290,8 @@ const std::vector<BusAccess> accesses{
      {0xff, 0xff, 0xff, 0xff, 0, 0, 0, 0}},
     {"no byte enabled", writing, 0x30, 4, tlm::TLM_BYTE_ENABLE_ERROR_RESPONSE, ~0u, {0}},
     {"neither enabled nor disabled", writing, 0x30, 4, tlm::TLM_BYTE_ENABLE_ERROR_RESPONSE, ~0u, {1}},
+    {"no command", static_cast<tlm::tlm_command>(3), 0x30, 4, tlm::TLM_COMMAND_ERROR_RESPONSE},
+    {"no command, a read-only register", static_cast<tlm::tlm_command>(3), 0, 4, tlm::TLM_COMMAND_ERROR_RESPONSE},
     {"neither read nor write", tlm::TLM_IGNORE_COMMAND, 0x30, 4, tlm::TLM_OK_RESPONSE},
     {"neither read nor write, control", tlm::TLM_IGNORE_COMMAND, offset::control, 4, tlm::TLM_OK_RESPONSE},
     {"neither read nor write, a read-only register", tlm::TLM_IGNORE_COMMAND, 0, 4, tlm::TLM_OK_RESPONSE},
@@ -478,6 +480,10 @@ TEST_CASE("debug transport reads all registers, writes plain ones, and starts no
         CHECK(cpu.read32(offset::ring_address + 4, value) == 0);
         CHECK(value == datapath::load_word(&two[4]));
         CHECK_FALSE(bench.devices[0]->busy());
+        bench.reset.write(true);
+        cpu.pass(sc_core::sc_time(1, sc_core::SC_NS));
+        CHECK(debug(writing, offset::ring_address, two) == 0);
+        bench.reset.write(false);
         tlm::tlm_generic_payload payload;
         tlm::tlm_dmi dmi;
         CHECK_FALSE(cpu.bus->get_direct_mem_ptr(payload, dmi));
@@ -514,6 +520,17 @@ TEST_CASE("an invalid device is refused during construction") {
     design.triangles_ahead = 65537;
     CHECK(refused(design) == "device: DeviceDesign::triangles_ahead = 65537: must be 1 to 65536");
     design = design_of(setup);
+    design.register_cycles = 0;
+    CHECK(refused(design) == "device: DeviceDesign::register_cycles = 0: must be 1 to 65536");
+    design = design_of(setup);
+    design.machine.transport = static_cast<Transport>(9);
+    CHECK_THAT(refused(design), Catch::Contains("Design::transport = 9: must be Transport::blocking or"));
+    design = design_of(setup);
+    datapath::Registers narrow = setup.registers;
+    narrow.formats.texture.bits = 12;
+    narrow.formats.texture.fraction = 12;
+    CHECK_THAT(error_of([&] { const Device device("device", narrow, design); }),
+               Catch::Contains("Formats::texture.bits = 12: must be 14 to 25"));
     design.machine.timing.transform.interval = 0;
     CHECK_THAT(refused(design), Catch::Contains("device.machine: Design::timing.transform.interval = 0: must be 1 to"));
 }

@@ -168,7 +168,7 @@ const CaseTable<BenchMode> random_addresses{
                 if (dice.one_in(6))
                     places.triangle_count = random_word(dice);
                 if (dice.one_in(4))
-                    places.ring_size = random_word(dice);
+                    places.ring_size = random_word(dice) & 0x7fffffff;
                 cpu.keeper.sync();
                 bench.memory.bytes = image;
                 set_machine(driver, setup.registers);

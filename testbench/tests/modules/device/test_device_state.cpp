@@ -77,8 +77,7 @@ const CaseTable<BenchMode> idle_resets{
                     bench.reset.write(true);
                     cpu.pass(sc_time(1, SC_NS));
                 }
-                CHECK(its.word(offset::status) == 0);
-                expect_reset(driver, formats_of(its.setup));
+                expect_reset(driver, formats_of(its.setup), bench.reset.read());
                 CHECK_FALSE(its.interrupt());
                 bench.reset.write(false);
                 cpu.pass(sc_time(1, SC_NS));
@@ -179,7 +178,8 @@ const CaseTable<TwoErrors> two_errors{
                 its.set_word(offset::control, control_reset);
                 CHECK(its.word(offset::status) == (status_busy | status_resetting));
             }
-            CHECK(tessera_wait(&driver, 100'000) == static_cast<int>(row.kept));
+            CHECK(tessera_wait(&driver, 100'000) ==
+                  (row.kept == DeviceError::none ? TESSERA_NO_FRAME : static_cast<int>(row.kept)));
             CHECK(failures == 2);
             std::uint64_t address = 0;
             CHECK(tessera_last_error(&driver, &address) == static_cast<int>(row.kept));
@@ -318,6 +318,121 @@ TEST_CASE("the driver acknowledges only the interrupts that it has seen") {
 }
 
 namespace {
+
+const CaseTable<BenchMode> driver_calls{
+    "the driver says what went wrong, and keeps its place in the ring: ",
+    {functional, timed},
+    [](const BenchMode& mode) {
+        OneDevice its(mode.timed);
+        Bench& bench = its.bench;
+        const FramePlaces other = bench.place(its.setup, 4000);
+        bench.cpu.program = [&](Processor& cpu) {
+            tessera_driver& driver = bench.init();
+            tessera_finished_triangle triangle;
+            std::uint32_t all = 0, count = 0;
+            const auto waiting = [&] {
+                REQUIRE(tessera_ring_count(&driver, &count) == TESSERA_OK);
+                return count;
+            };
+            CHECK(tessera_wait(&driver, 1) == TESSERA_NO_FRAME);
+            CHECK(tessera_ring_pop(&driver, &triangle) == TESSERA_EMPTY);
+            CHECK(waiting() == 0);
+            set_frame(driver, its.setup, its.places);
+            REQUIRE(tessera_start(&driver) == TESSERA_OK);
+            REQUIRE(tessera_wait(&driver, ~0u) == TESSERA_OK);
+            all = waiting();
+            REQUIRE(all > 100);
+            LitKeys found;
+            const auto pop = [&](unsigned number) {
+                for (; number > 0; --number) {
+                    REQUIRE(tessera_ring_pop(&driver, &triangle) == TESSERA_OK);
+                    found.insert(key_of(triangle));
+                }
+            };
+            pop(10);
+            INFO("a frame that is refused, a ring for the next, and a second driver leave the records where they are");
+            REQUIRE(tessera_set(&driver, TESSERA_REGISTER_LIGHT_AMBIENT, 300) == TESSERA_OK);
+            CHECK(tessera_start(&driver) == TESSERA_ERROR_BAD_VALUE);
+            CHECK(waiting() == all - 10);
+            pop(10);
+            bench.init();
+            CHECK(waiting() == all - 20);
+            REQUIRE(tessera_set_ring(&driver, other.ring, other.ring_size) == TESSERA_OK);
+            pop(all - 20);
+            CHECK(waiting() == 0);
+            CHECK(tessera_ring_pop(&driver, &triangle) == TESSERA_EMPTY);
+            CHECK(waiting() == 0);
+            set_machine(driver, its.setup.registers);
+            expect_same(run_frame(driver), found);
+            INFO("values that do not fit");
+            for (const auto& [number, value] : {std::pair{TESSERA_REGISTER_RING_SIZE, std::int64_t{0x80000005}},
+                                                {TESSERA_REGISTER_LIGHT_AMBIENT, 522},
+                                                {TESSERA_REGISTER_MAP_WIDTH, 8256},
+                                                {TESSERA_REGISTER_DISPLACEMENT_SCALE, std::int64_t{1} << 31}}) {
+                std::int64_t before = 0, after = 0;
+                REQUIRE(tessera_get(&driver, number, &before) == TESSERA_OK);
+                CHECK(tessera_set(&driver, number, value) == TESSERA_BAD_VALUE);
+                REQUIRE(tessera_get(&driver, number, &after) == TESSERA_OK);
+                CHECK(after == before);
+            }
+            INFO("the reset input");
+            REQUIRE(tessera_start(&driver) == TESSERA_OK);
+            bench.reset.write(true);
+            cpu.pass(sc_time(100, SC_US));
+            CHECK(tessera_set(&driver, TESSERA_REGISTER_MAP_WIDTH, 8) == TESSERA_BUSY);
+            CHECK(its.word(offset::status) == (status_busy | status_resetting));
+            bench.reset.write(false);
+            CHECK(tessera_wait(&driver, ~0u) == TESSERA_NO_FRAME);
+            CHECK(waiting() == 0);
+        };
+        bench.run();
+    }};
+
+const CaseTable<BenchMode> unfilled_tables{
+    "a frame that would read a table that was not fetched whole, in its size, is refused: ",
+    {functional, timed},
+    [](const BenchMode& mode) {
+        OneDevice its(mode.timed);
+        Bench& bench = its.bench;
+        bench.cpu.program = [&](Processor& cpu) {
+            tessera_driver& driver = bench.init();
+            const auto start = [&](std::uint32_t fetched) {
+                set_frame(driver, its.setup, its.places);
+                REQUIRE(tessera_fetch_tables(&driver, fetched) == TESSERA_OK);
+                int result = tessera_start(&driver);
+                if (result == TESSERA_OK)
+                    result = tessera_wait(&driver, ~0u);
+                return result;
+            };
+            CHECK(start(0) == TESSERA_ERROR_NO_TABLE);
+            CHECK(start(5) == TESSERA_ERROR_NO_TABLE);
+            CHECK(start(7) == TESSERA_OK);
+            CHECK(start(0) == TESSERA_OK);
+            INFO("a fetch that fails, or is reset, leaves none");
+            REQUIRE(tessera_set_tables(&driver, its.places.displacement_map, 0, its.places.summed_height_table) == 0);
+            REQUIRE(tessera_fetch_tables(&driver, 2) == TESSERA_OK);
+            REQUIRE(tessera_start(&driver) == TESSERA_OK);
+            CHECK(tessera_wait(&driver, ~0u) == TESSERA_ERROR_TABLE_READ);
+            CHECK(start(5) == TESSERA_ERROR_NO_TABLE);
+            CHECK(start(2) == TESSERA_OK);
+            set_frame(driver, its.setup, its.places);
+            REQUIRE(tessera_fetch_tables(&driver, 1) == TESSERA_OK);
+            REQUIRE(tessera_start(&driver) == TESSERA_OK);
+            REQUIRE(tessera_reset(&driver, ~0u) == TESSERA_OK);
+            CHECK(start(6) == TESSERA_ERROR_NO_TABLE);
+            INFO("another size");
+            CHECK(start(1) == TESSERA_OK);
+            REQUIRE(tessera_set(&driver, TESSERA_REGISTER_MAP_WIDTH, its.setup.registers.map.width / 2) == TESSERA_OK);
+            REQUIRE(tessera_fetch_tables(&driver, 3) == TESSERA_OK);
+            CHECK(tessera_start(&driver) == TESSERA_ERROR_NO_TABLE);
+            INFO("without a height test its table is not read");
+            REQUIRE(tessera_set(&driver, TESSERA_REGISTER_TESTS_SUMMED_HEIGHT_TEST, 0) == TESSERA_OK);
+            CHECK(tessera_start(&driver) == TESSERA_OK);
+            CHECK(tessera_wait(&driver, ~0u) == TESSERA_OK);
+            cpu.pass(sc_core::SC_ZERO_TIME);
+        };
+        bench.run();
+    }};
 
 struct Silence {
     std::string name;

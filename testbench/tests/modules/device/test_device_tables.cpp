@@ -110,10 +110,10 @@ const CaseTable<BenchMode> own_tables{
 
 /// A blocking memory that may do without debug transport, or treat writes by it otherwise.
 struct StubbornMemory : sc_core::sc_module {
-    enum class Debug { none, reads_only, loses_writes, one_byte_at_a_time };
+    enum class Debug { none, reads_only, loses_writes, one_byte_at_a_time, elsewhere };
 
     tlm_utils::simple_target_socket<StubbornMemory> socket{"socket"};
-    Bytes bytes;
+    Bytes bytes, other_bytes;
     Debug debug;
 
     StubbornMemory(const sc_core::sc_module_name& name, Debug its_debug) : sc_module(name), debug(its_debug) {
@@ -131,7 +131,7 @@ struct StubbornMemory : sc_core::sc_module {
             return payload.get_data_length();
         if (debug == Debug::one_byte_at_a_time)
             payload.set_data_length(1);
-        return bytes.access(payload);
+        return debug == Debug::elsewhere ? other_bytes.access(payload) : bytes.access(payload);
     }
 };
 
@@ -193,6 +193,27 @@ const CaseTable<Stubborn> host_refused{
         NamedMachine machine("machine", setup, &units);
         CHECK_THAT(error_of([] { sc_core::sc_start(); }),
                    Contains("machine.pipeline.") && Contains(row.port + ": ") && Contains("transport_dbg"));
+    }};
+
+}  // namespace
+
+namespace {
+
+const CaseTable<BenchMode> led_elsewhere{
+    "a memory whose debug accesses lead elsewhere than its transactions is an error: ",
+    {{"functional", false}, {"timed", true}},
+    [](const BenchMode& mode) {
+        const MachineSetup setup = setup_of(small_job(mode.timed));
+        BridgedUnits units(setup.design.timing, one_stubborn("normal_map", Debug::elsewhere));
+        Bench bench({formats_of(setup)}, design_of(setup), false, true, {&units});
+        const FramePlaces places = bench.place(setup, 5000);
+        bench.cpu.program = [&](Processor&) {
+            tessera_driver& driver = bench.init();
+            set_frame(driver, setup, places);
+            run_frame(driver);
+        };
+        CHECK_THAT(error_of([] { sc_core::sc_start(); }),
+                   Contains("normal_map: ") && Contains("lead debug accesses where transactions go"));
     }};
 
 }  // namespace
@@ -331,7 +352,7 @@ const CaseTable<BenchMode> overlapping{"a device whose tables lie over one anoth
                                                run_frame(driver);
                                            };
                                            CHECK_THAT(error_of([] { sc_core::sc_start(); }),
-                                                      Contains("device_0.machine.") && Contains("no longer holds"));
+                                                      Contains("device_0.machine.") && Contains("of its own"));
                                        }};
 
 const CaseTable<BenchMode> overwritten_frames{
@@ -356,7 +377,7 @@ const CaseTable<BenchMode> overwritten_frames{
             REQUIRE(tessera_fetch_tables(&bench.drivers[0], 0) == TESSERA_OK);
             run_frame(bench.drivers[0]);
         };
-        CHECK_THAT(error_of([] { sc_core::sc_start(); }), Contains("device_0.machine.") && Contains("no longer holds"));
+        CHECK_THAT(error_of([] { sc_core::sc_start(); }), Contains("device_0.machine.") && Contains("of its own"));
         CHECK(drawn);
     }};
 

@@ -147,7 +147,7 @@ TEST_CASE("design rules: a format beyond the datapath's limits is refused") {
         {[](auto& f) { f.position.fraction = f.position.bits; }, "Formats::position.fraction = "},
         {[](auto& f) { f.normal.bits = 19; }, "Formats::normal.bits = 19: must be 6 to 18"},
         {[](auto& f) { f.normal.fraction = f.normal.bits; }, "Formats::normal.fraction = "},
-        {[](auto& f) { f.texture.bits = 1 + 13 + f.texture.fraction; }, "Formats::texture.bits = 13: must be 1 to 12"},
+        {[](auto& f) { f.texture.bits = 1 + 13 + f.texture.fraction; }, "Formats::texture.bits = 26: must be 14 to 25"},
         {[](auto& f) { f.texture.fraction = 13; }, "Formats::texture.fraction = 13: must be 0 to 12"},
         {[](auto& f) { f.tex_coord_fraction = f.texture.fraction + 1; }, "Formats::tex_coord_fraction = "},
         {[](auto& f) { f.displacement.bits = 17; }, "Formats::displacement.bits = 17: must be 1 to 16"},
