@@ -36,7 +36,7 @@ class Study:
 
     def run(self, name, job=None, settings=None, error=False, keep=True):
         """job: a name in testbench/examples/jobs, or None for the half donut. error: measured as `tessera compare` does.
-        keep: keep the files, for meshes, pictures and frames."""
+        keep: keep the files, for meshes and pictures."""
         job, settings = job and JOBS / f"{job}.toml", {**self.QUIET, **(settings or {})}
         content, inputs = self._content(job, settings)
         return self.add(name, [content, error], run_commands(self.program, job, settings, error), keep, inputs)
@@ -138,14 +138,13 @@ class Run:
         self.finished()
         return json.loads((self.files / "tuned.json").read_text())
 
-    def render(self, view, name=None, part="", **options):
-        """A picture, NAME.png, drawn after the page's figures; options of `tessera render` with underscores for hyphens.
-        part: a frame's folder in the run's."""
+    def render(self, view, name=None, **options):
+        """A picture, NAME.png, drawn after the page's figures; options of `tessera render` with underscores for hyphens."""
         width = self.study.picture_width
         file, words = f"{name or view}.png", []
         for option, value in {"size": f"{width}x{width * 3 // 4}", **options}.items():
             words += ["--" + option.replace("_", "-"),
                       *(value if isinstance(value, (list, tuple)) else [] if value is True else [value])]
-        render = self.study.words("render", self.folder / part, "--view", view, "--output", f"{FOLDER}/{file}", *words)
+        render = self.study.words("render", self.folder, "--view", view, "--output", f"{FOLDER}/{file}", *words)
         self.study.pictures.append(self.study.add(self.name, render[1:], [render]))
         return self.study.pictures[-1].files / file
