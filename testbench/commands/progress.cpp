@@ -18,14 +18,12 @@ const Progress::Clock::time_point program_began = Progress::Clock::now();
 
 }  // namespace
 
-Progress::Progress(std::string before)
-    : Progress(std::move(before), {stderr, isatty(STDERR_FILENO) != 0, program_began, &Progress::Clock::now}) {
+Progress::Progress() : Progress({stderr, isatty(STDERR_FILENO) != 0, program_began, &Progress::Clock::now}) {
     if (!display_.terminal)
         begin_to_say();
 }
 
-Progress::Progress(std::string before, const Display& display)
-    : before_(std::move(before)), display_(display), next_(display.now()), reported_(tens()) {}
+Progress::Progress(const Display& display) : display_(display), next_(display.now()), reported_(tens()) {}
 
 Progress::~Progress() {
     clear();
@@ -81,7 +79,7 @@ void Progress::report_if_due_locked() {
 
 void Progress::show(const std::string& what, double part) {
     const std::lock_guard lock(mutex_);
-    const auto end = fmt::format_to_n(text_.data(), text_.size(), "at {:.0f} %, {}{}", 100 * part, before_, what);
+    const auto end = fmt::format_to_n(text_.data(), text_.size(), "at {:.0f} %, {}", 100 * part, what);
     text_size_ = std::min(end.size, text_.size());
     Interruption::note(text());
     report_if_due_locked();
@@ -96,8 +94,7 @@ void Progress::show_on_terminal(const std::string& what, double part) {
     next_ = now + std::chrono::milliseconds(100);
     constexpr int width = 30;
     const int full = static_cast<int>(std::clamp(part, 0.0, 1.0) * width);
-    write(
-        fmt::format("\r\x1b[K[{:=<{}}{: <{}}] {:3.0f} %  {}{}", "", full, "", width - full, 100 * part, before_, what));
+    write(fmt::format("\r\x1b[K[{:=<{}}{: <{}}] {:3.0f} %  {}", "", full, "", width - full, 100 * part, what));
     shown_ = true;
 }
 

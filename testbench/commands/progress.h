@@ -26,10 +26,10 @@ class Progress {
         Clock::time_point (*now)();
     };
 
-    /// On standard error. `before`: prefix of every line.
-    explicit Progress(std::string before = {});
+    /// On standard error.
+    Progress();
     /// On another display; lines are written by show() and report_if_due() only.
-    Progress(std::string before, const Display& display);
+    explicit Progress(const Display& display);
     ~Progress();
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
@@ -51,7 +51,6 @@ class Progress {
     void write(const std::string& text);
     void report_until_stopped();
 
-    std::string before_;
     Display display_;
     bool shown_ = false;
     Clock::time_point next_;

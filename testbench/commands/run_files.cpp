@@ -14,7 +14,6 @@
 #include "testbench/commands/render_command.h"
 #include "testbench/common/error.h"
 #include "testbench/job/dump_job.h"
-#include "testbench/job/frame_job.h"
 
 namespace tessera {
 
@@ -24,8 +23,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* run_file_names[] = {"job.toml",       "mesh.ply",         "mesh.obj",   "statistics.json",
                                           "statistics.csv", "conformance.json", "report.txt", "queue_levels.csv",
-                                          "picture.png",    "error.json",       "trace.vcd",  "trace.fst",
-                                          "frames.csv",     "frames.txt"};
+                                          "picture.png",    "error.json",       "trace.vcd",  "trace.fst"};
 
 /// Whether a run, or a command on a run, writes or removes a file of this name.
 bool is_run_file(const std::string& name) {
@@ -71,11 +69,6 @@ fs::path plain(const fs::path& path) {
     return absolute.has_filename() ? absolute : absolute.parent_path();
 }
 
-/// Whether a run into `output` owns `folder`: the same folder, or the folder of one of its frames.
-bool is_of(const fs::path& folder, const fs::path& output) {
-    return folder == output || (folder.parent_path() == output && is_frame_name(folder.filename().string()));
-}
-
 }  // namespace
 
 fs::path real_place(const fs::path& path) {
@@ -118,32 +111,13 @@ void check_folder_of(const fs::path& file, const std::string& option) {
     check_output_folder(folder, option);
 }
 
-void take_away_run(const fs::path& folder, AtomicSet& files) {
-    if (!is_run_folder(folder))
-        return;
-    for (const char* const name : run_file_names)
-        take_away_plain(folder / name, files);
-    for (const std::string& name : picture_names())
-        take_away_plain(folder / name, files);
-}
-
-void take_away_frames(const fs::path& folder, AtomicSet& files) {
-    std::error_code failed;
-    std::vector<fs::path> frames;
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder, failed)) {
-        const fs::path& frame = entry.path();
-        if (is_frame_name(frame.filename().string()) && fs::is_directory(fs::symlink_status(frame, failed)))
-            frames.push_back(frame);
-    }
-    for (const fs::path& frame : frames) {
-        take_away_run(frame, files);
-        files.take_away_folder(frame);
-    }
-}
-
 void replace_run(const fs::path& folder, AtomicSet& files) {
-    take_away_run(folder, files);
-    take_away_frames(folder, files);
+    if (is_run_folder(folder)) {
+        for (const char* const name : run_file_names)
+            take_away_plain(folder / name, files);
+        for (const std::string& name : picture_names())
+            take_away_plain(folder / name, files);
+    }
     files.commit();
 }
 
@@ -155,17 +129,12 @@ void require_run_folder(const Job& job) {
     const fs::path inside = fs::current_path().lexically_relative(output);
     if (!output.has_relative_path() || (inside != "." && *inside.begin() != ".."))
         refuse("contains the current directory; name a folder for this run only");
-    std::vector<fs::path> folders{output};
-    for (std::int64_t k = 0; job.frames.count > 1 && k < job.frames.count; ++k)
-        folders.push_back(output / frame_name(k));
-    for (const fs::path& folder : folders) {
-        const std::vector<std::string> taken = names_taken(folder);
-        if (!taken.empty() && !is_run_folder(folder))
-            refuse(
-                fmt::format("the run would replace {}, but the folder is not a run folder of tessera: move the file, "
-                            "or choose another output.folder",
-                            (folder / taken.front()).string()));
-    }
+    const std::vector<std::string> taken = names_taken(output);
+    if (!taken.empty() && !is_run_folder(output))
+        refuse(
+            fmt::format("the run would replace {}, but the folder is not a run folder of tessera: move the file, or "
+                        "choose another output.folder",
+                        (output / taken.front()).string()));
 }
 
 void require_inputs_stay(const Job& job) {
@@ -178,11 +147,11 @@ void require_inputs_stay(const Job& job) {
     };
     const auto taken = [&](const fs::path& file) {
         for (const fs::path& place : {place_of_name(file), real_place(file)})
-            if (is_of(place.parent_path(), output) && is_run_file(place.filename().string()))
+            if (place.parent_path() == output && is_run_file(place.filename().string()))
                 return true;
         return false;
     };
-    if (job.mesh.source == MeshSource::run ? is_of(real_place(job.mesh.path), output)
+    if (job.mesh.source == MeshSource::run ? real_place(job.mesh.path) == output
                                            : reads_file(job.mesh.source) && taken(job.mesh.path))
         refuse("base mesh", "mesh.file", job.mesh.file);
     if (job.map.source == MapSource::file && taken(job.map.path))

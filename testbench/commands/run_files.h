@@ -24,17 +24,17 @@ void check_output_folder(const std::filesystem::path& folder, const std::string&
 /// The same for the folder of a file named by an option. The folder must exist.
 void check_folder_of(const std::filesystem::path& file, const std::string& option);
 
-/// Replaces everything that an earlier run, of one frame or several, left in `folder` by `files`, so that results of
-/// different runs never mix. Kept: the contents of a folder that no run wrote (its job.toml does not begin with
-/// run_job_heading), names that no run writes, anything but regular files, and frame folders with other contents.
+/// Replaces everything that an earlier run left in `folder` by `files`, so that results of different runs never mix.
+/// Kept: the contents of a folder that no run wrote (its job.toml does not begin with run_job_heading), names that no run
+/// writes, and anything but regular files.
 void replace_run(const std::filesystem::path& folder, AtomicSet& files);
 
 /// Throws InputError if job.output.folder is unsuitable: the root, a folder above the working folder, or one that no
-/// run wrote and that contains a file with the name of a run's file. The same for frames' folders.
+/// run wrote and that contains a file with the name of a run's file.
 void require_run_folder(const Job& job);
 
-/// Throws InputError if this run would remove its own input: the run of mesh.source = "run" is in output.folder or a
-/// frame in it, or a mesh or map file there has the name of a run's file.
+/// Throws InputError if this run would remove its own input: the run of mesh.source = "run" is in output.folder, or a
+/// mesh or map file there has the name of a run's file.
 void require_inputs_stay(const Job& job);
 
 /// Throws InputError if a file that the command writes because of `--output` would overwrite an input: the job file (if

@@ -18,7 +18,6 @@
 #include "testbench/check/transport/read_checked_units.h"
 #include "testbench/commands/progress.h"
 #include "testbench/commands/run_files.h"
-#include "testbench/commands/run_frames.h"
 #include "testbench/commands/summary.h"
 #include "testbench/common/atomic_file.h"
 #include "testbench/common/atomic_set.h"
@@ -143,14 +142,11 @@ struct Ending {
     std::string text;
 };
 
-/// `name` identifies the run in its progress line. Its results replace those of an earlier run in `replaced`:
-/// job.output.folder, or a folder above it.
-Ending run_once(const Job& asked, const Command& command, const std::string& name,
-                const std::filesystem::path& replaced) {
+Ending run_once(const Job& asked, const Command& command) {
     const std::filesystem::path folder = asked.output.folder;
     check_output_folder(folder);
 
-    Progress progress(name);
+    Progress progress;
     progress.show("reading mesh and map", 0);
     const Loaded loaded = load(asked);
     const Inputs& inputs = loaded.inputs;
@@ -223,7 +219,7 @@ Ending run_once(const Job& asked, const Command& command, const std::string& nam
         fmt::print(stderr, "tessera: {}", stuck);
         if (traces) {
             write_file(folder / "job.toml", dump_job(job, folder));
-            replace_run(replaced, files);
+            replace_run(folder, files);
             fmt::print(stderr, "{}  in {}\n", traces_text,
                        std::filesystem::absolute(folder).lexically_normal().string());
         }
@@ -283,7 +279,7 @@ Ending run_once(const Job& asked, const Command& command, const std::string& nam
     checks.invariants = invariants.get();
     const MeshCounts counts = mesh_counts.get();
     write_reports(folder, job, setup, simulation, counts, checks);
-    replace_run(replaced, files);
+    replace_run(folder, files);
     progress.clear();
 
     return {checks.passed() ? ExitCode::fine : ExitCode::check_failed,
@@ -305,12 +301,7 @@ ExitCode run_job(const Command& command) {
     require_run_folder(job);
     require_inputs_stay(job);
     record_fingerprints(job);
-    if (job.frames.count > 1)
-        return run_frames(job, [&](const Job& frame, const std::string& name, const std::filesystem::path& replaced) {
-            const Ending ending = run_once(frame, command, name, replaced);
-            return FrameEnd{ending.code, messages_of(ending.text)};
-        });
-    const Ending ending = run_once(job, command, {}, job.output.folder);
+    const Ending ending = run_once(job, command);
     fmt::print("{}", ending.text);
     return ending.code;
 }

@@ -209,17 +209,6 @@ std::string notes_text(const std::vector<std::string>& repairs, const std::vecto
     return text;
 }
 
-std::string messages_of(const std::string& summary) {
-    std::string messages, line;
-    for (std::istringstream lines(summary); std::getline(lines, line);) {
-        const std::string_view words = std::string_view(line).substr(std::min<std::size_t>(2, line.size()));
-        for (const std::string_view begin : {"warning: ", "note: ", "bound ", "creases ", "texture seams "})
-            if (words.substr(0, begin.size()) == begin)
-                messages += line + '\n';
-    }
-    return messages;
-}
-
 std::string summary(const MachineSetup& setup, const Simulation& simulation, const MeshCounts& mesh,
                     const Checks& checks, double seconds) {
     const Totals totals(simulation);

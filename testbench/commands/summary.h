@@ -14,9 +14,6 @@ std::string found_text(const std::vector<FoundValue>& found);
 /// Lines for what was done to the inputs, and for the setup's remarks.
 std::string notes_text(const std::vector<std::string>& repairs, const std::vector<std::string>& remarks);
 
-/// The lines of a summary that concern the user, not the figures: open seams and creases, the bound, warnings, notes.
-std::string messages_of(const std::string& summary);
-
 /// The table printed by a run: results, cost and checks. mesh: counts of the simulation's mesh. seconds: run time.
 std::string summary(const MachineSetup& setup, const Simulation& simulation, const MeshCounts& mesh,
                     const Checks& checks, double seconds);

@@ -149,11 +149,6 @@ Searched choose_tests(const TuneOrder& order, TuneRequest& request) {
             "tests.generation and tests.tex_coord are both off: low thresholds would split without end; "
             "switch "
             "one on");
-    if (request.job.frames.count > 1)
-        throw InputError(
-            fmt::format("frames.count = {}: thresholds are tuned for one frame; tune with --set frames.count=1 and "
-                        "set it in the tuned job, whose other frames may have more triangles",
-                        request.job.frames.count));
     if (tests.highlight)
         throw InputError(
             "tests.highlight = true: the search does not consider highlights; tune with --set "

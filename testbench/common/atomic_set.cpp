@@ -180,10 +180,6 @@ void AtomicSet::take_away(const fs::path& file) {
     taken_away_.push_back(file);
 }
 
-void AtomicSet::take_away_folder(const fs::path& folder) {
-    taken_away_folders_.push_back(folder);
-}
-
 void AtomicSet::commit() {
     const Interruption::Delay delay;
     Moves moves;
@@ -212,11 +208,6 @@ void AtomicSet::commit() {
         synchronise(each.first);
     made_.clear();
     discard();
-    std::error_code holds_more;
-    for (const fs::path& emptied : taken_away_folders_) {
-        remove_left_overs(emptied);
-        fs::remove(emptied, holds_more);
-    }
     Interruption::note("when the results were complete");
 }
 

@@ -48,9 +48,6 @@ class AtomicSet {
     /// Removes a regular file when the others appear.
     void take_away(const std::filesystem::path& file);
 
-    /// Removes a folder then, if it is empty.
-    void take_away_folder(const std::filesystem::path& folder);
-
     /// Call once; signals wait until it returns. Throws InputError, with the name, if a file can be neither renamed nor
     /// removed: then nothing has changed.
     void commit();
@@ -61,7 +58,7 @@ class AtomicSet {
 
     std::map<std::filesystem::path, std::filesystem::path> staging_;  // by target folder
     std::vector<std::filesystem::path> made_;                         // innermost last
-    std::vector<std::filesystem::path> files_, taken_away_, taken_away_folders_;
+    std::vector<std::filesystem::path> files_, taken_away_;
     Interruption::CleanUp clean_up_{[this] { discard(); }};  // last member: destroyed before all of the above
 };
 

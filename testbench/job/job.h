@@ -77,11 +77,6 @@ struct Job {
     using Displacement = DisplacementSettings;
     Displacement displacement;  // model units; automatic values: testbench/machine/resolve_job.h
 
-    struct Frames {
-        std::int64_t count = 1;  // 1: an ordinary run
-        double first_scale = 0;  // model units; the last frame's is displacement.scale
-    } frames;
-
     using Camera = CameraSettings;
     Camera camera;
 

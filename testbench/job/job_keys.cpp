@@ -251,11 +251,6 @@ std::vector<KeyTable> declare_keys() {
         key.add("address_v", &Map::address_v, "Addressing beyond the map's lower and upper border");
     });
     list.table("displacement", &Job::displacement, "From map value to height along the normal: bias + scale * (value - low) / (high - low), with low and high of map.range.", [](const auto& key) { declare_displacement_keys(key); });
-    list.table("frames", &Job::frames, "Several frames with different displacement scales, each in its own run folder: frame_000, ... in output.folder.", [](const auto& key) {
-        using Frames = Job::Frames;
-        key.add("count", &Frames::count, "frames", between(1, 1000), "Number of frames; frame k of n has the scale first_scale + (displacement.scale - first_scale) * k / (n - 1); 1: a single run with displacement.scale");
-        key.add("first_scale", &Frames::first_scale, "model units", coordinate_range, "Scale of frame 0; the last frame has the job's displacement.scale");
-    });
     list.table("camera", &Job::camera, "The camera, which the View Test depends on.", [](const auto& key) { declare_camera_keys(key); });
     list.table("tests", &Job::tests, "The edge tests: split = (normal or summed_height or highlight) and view and tex_coord and generation.", [](const auto& key) { declare_tests_keys(key); });
     list.table("formats", &Job::formats, "Fixed-point formats of the hardware. The bits of signed formats include the sign.", [](const auto& key) { declare_formats_keys(key); });

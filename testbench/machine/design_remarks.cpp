@@ -141,8 +141,6 @@ std::vector<Idle> idle_keys(const Job& job, const MachineSetup& setup) {
         idle.push_back(std::move(keys));
     if (!job.output.vcd)
         idle.push_back({{"output.trace_*"}, "output.vcd = false"});
-    if (job.frames.count == 1)
-        idle.push_back({{"frames.first_scale"}, "frames.count = 1"});
     const auto unless = [&](bool used, std::vector<std::string> keys, std::string because) {
         if (!used)
             idle.push_back({std::move(keys), std::move(because)});
@@ -194,7 +192,7 @@ std::vector<std::string> design_remarks(const Job& job, const MachineSetup& setu
     preset.hardware.design = job.hardware.design;
     apply_design(preset);
     const std::vector<Idle> idle = idle_keys(job, setup);
-    for (const char* const name : {"mesh", "map", "frames", "tests", "formats", "hardware", "timing", "output"})
+    for (const char* const name : {"mesh", "map", "tests", "formats", "hardware", "timing", "output"})
         for (const Key& key : find_table(name)->keys) {
             const std::string value = toml_value(key.get(job)), setting = fmt::format("{} = {}", key.name, value);
             const auto why = std::find_if(idle.begin(), idle.end(), [&](const Idle& it) { return it.has(key.name); });

@@ -25,12 +25,7 @@ std::uint64_t base_mesh_bytes(const MachineSetup& setup);
 /// takes one word, a wider one two; switches and choices share the first. Their number depends on the design only.
 std::vector<std::uint32_t> register_words(const datapath::Registers& registers);
 
-/// Traffic to a machine for its first frame.
-HostTraffic first_frame_traffic(const MachineSetup& setup);
-
-/// Traffic to a machine that has rendered the frame `before`: the base mesh, and everything that has changed, as whole
-/// tables or register words. Another displacement scale changes the normal map and the register S; and also the model's
-/// scale, and with it Transform's matrix, if the displacement requires or allows another range of positions.
-HostTraffic next_frame_traffic(const MachineSetup& before, const MachineSetup& now);
+/// Traffic for a frame for which everything is sent.
+HostTraffic host_traffic(const MachineSetup& setup);
 
 }  // namespace tessera

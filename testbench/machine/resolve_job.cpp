@@ -164,36 +164,25 @@ class Resolver {
                                                 reach > span ? ", reduced because values exceed map.range" : ""));
     }
 
-    /// Of the first and of the last frame.
-    std::array<Job::Displacement, 2> extreme_frames() const {
-        const Job& job = result_.job;
-        Job::Displacement first = job.displacement;
-        if (job.frames.count > 1)
-            first.scale = job.frames.first_scale;
-        return {first, job.displacement};
-    }
-
     /// A displacement that is too large for the formats would put the camera out of its range: it is refused first.
     void check_displacement() const {
         const Job& job = result_.job;
         const datapath::Format position = make_formats(job.formats, job.hardware.displacement_filter).position;
-        for (const Job::Displacement& frame : extreme_frames())
-            fit_model(mesh_, frame, map_, position, job.map.source == MapSource::file ? job.map.file : "map");
+        fit_model(mesh_, job.displacement, map_, position, job.map.source == MapSource::file ? job.map.file : "map");
     }
 
-    /// Lowest and highest displacement of the first and of the last frame; those in between stay within.
-    std::vector<double> heights_of_all_frames() const {
+    /// Lowest and highest displacement.
+    std::vector<double> extreme_heights() const {
         std::vector<double> heights;
         for (const double value : map_.extremes())
-            for (const Job::Displacement& frame : extreme_frames())
-                heights.push_back(MapDisplacement::from(frame, map_).of(value));
+            heights.push_back(MapDisplacement::from(result_.job.displacement, map_).of(value));
         return heights;
     }
 
     void find_camera() {
         Job& job = result_.job;
         Job::Camera& camera = job.camera;
-        const Box box = bounding_box(mesh_, heights_of_all_frames());
+        const Box box = bounding_box(mesh_, extreme_heights());
         const bool no_eye = is_automatic(camera.eye), no_target = is_automatic(camera.target),
                    no_up = is_automatic(camera.up);
         glm::dvec3 up = no_up ? find_up(job.mesh.source, mesh_, flat_) : glm::dvec3(0);
@@ -268,7 +257,7 @@ class Resolver {
                 "vertex of the mesh",
                 centre.x, centre.y, centre.z);
         double reach = 0;
-        for (const double height : heights_of_all_frames())
+        for (const double height : extreme_heights())
             reach = std::max(reach, std::abs(height));
         if (constexpr double usual = 1e6; reach > usual * base_.largest())
             return fmt::format(

@@ -47,9 +47,6 @@ Job read_run_job(const fs::path& folder) {
             folder.string()));
     Job job = read_job(job_file);
     validate(job);
-    if (job.frames.count > 1)
-        throw InputError(fmt::format("{}: holds {} frames, each a run's folder; name one of them, from {} on",
-                                     folder.string(), job.frames.count, (folder / "frame_000").string()));
     return job;
 }
 

@@ -18,9 +18,9 @@ struct RecordedRun {
 /// map files must exist, but are not read (see inputs.h). Without it, only the mesh is wanted, and the job's files need
 /// not exist.
 ///
-/// Errors: InputError with file and remedy: no such folder, no job.toml (not a run's folder), a folder of frames, an
-/// invalid job, mesh or map no longer at the job's path, no mesh.ply (output.ply = false, or the run got stuck), an
-/// invalid mesh.ply (ply_reader.h).
+/// Errors: InputError with file and remedy: no such folder, no job.toml (not a run's folder), an invalid job,
+/// mesh or map no longer at the job's path, no mesh.ply (output.ply = false, or the run got stuck), an invalid mesh.ply
+/// (ply_reader.h).
 RecordedRun read_run(const std::filesystem::path& folder,
                      const std::optional<std::filesystem::path>& data_folder = std::nullopt);
 

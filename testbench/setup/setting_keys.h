@@ -21,7 +21,7 @@ void declare_displacement_keys(const Keys& key) {
 
 template <typename Keys>
 void declare_camera_keys(const Keys& key) {
-    key.add("eye", &CameraSettings::eye, "model units", auto_or(coordinate_range), "Position of the camera; auto: 20 degrees to the right of the front and 38 degrees above it, at the distance at which the bounding box of the displaced model, over all frames, fits into 90 % of the picture's width and height. The front is -y, or z if up is y");
+    key.add("eye", &CameraSettings::eye, "model units", auto_or(coordinate_range), "Position of the camera; auto: 20 degrees to the right of the front and 38 degrees above it, at the distance at which the bounding box of the displaced model fits into 90 % of the picture's width and height. The front is -y, or z if up is y");
     key.add("target", &CameraSettings::target, "model units", auto_or(coordinate_range), "Point that the camera looks at; auto: the centre of that bounding box");
     key.add("up", &CameraSettings::up, "-", auto_or(coordinate_range), "Direction that points up in the picture, of any length; auto: for an OBJ file y, or if it is flat the axis perpendicular to it, on the side of its normals; for a run on an OBJ file (or on a run) the earlier run's camera.up; for any other source z. If the camera looks along that axis, the direction away from the model's front");
     key.add("field_of_view", &CameraSettings::field_of_view, "degrees", between(0.1, 179), "Vertical field of view");

@@ -113,7 +113,7 @@ void texel_figures(std::vector<Figure>& all, const TexelSpread& spread) {
 void host_figures(std::vector<Figure>& all, const MachineSetup& setup, std::uint64_t finished, std::uint64_t vertices) {
     const datapath::Widths widths = datapath::stream_widths(setup.registers.formats);
     const auto bytes = [](std::uint64_t bits) { return (bits + 7) / 8; };
-    const HostTraffic traffic = first_frame_traffic(setup);
+    const HostTraffic traffic = host_traffic(setup);
     const std::uint64_t base = traffic.base_mesh;
     const std::uint64_t tables = traffic.displacement_map + traffic.normal_map + traffic.summed_height_table;
     const std::uint64_t whole = bytes(finished * 3 * widths.finished_vertex);

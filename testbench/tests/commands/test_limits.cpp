@@ -123,10 +123,9 @@ TEST_CASE("limits: a hundred million triangles are refused before any is made") 
                 {"mesh.columns = 2048", "mesh.rows", "the limit is 4000000"});
 }
 
-TEST_CASE("limits: maps, texts and frames that are far too large are refused") {
+TEST_CASE("limits: maps, texts and viewports that are far too large are refused") {
     refused({"map.width=1000000000"}, ExitCode::bad_input, {"`map.width` = 1000000000", "4096"});
     refused({"map.height=9223372036854775807"}, ExitCode::bad_input, {"`map.height`", "4096"});
-    refused({"frames.count=1000000"}, ExitCode::bad_input, {"`frames.count` = 1000000", "1000"});
     refused({"camera.viewport_width=2000000000"}, ExitCode::bad_input, {"`camera.viewport_width`", "16384"});
     refused({"map.source=text", "map.text=" + std::string(5000, 'a')}, ExitCode::bad_input,
             {"`map.text`", "5000 bytes", "4096"});

@@ -52,7 +52,7 @@ class Log {
 
 TEST_CASE("progress in a log: one line every ten seconds, none for shorter work") {
     const Log log(false);
-    Progress progress("frame_3: ", log.display());
+    Progress progress(log.display());
     progress.show("running", 0);
     log.at(9.999);
     progress.show("running", 0.4);
@@ -60,7 +60,7 @@ TEST_CASE("progress in a log: one line every ten seconds, none for shorter work"
     CHECK(log.text().empty());
     log.at(10);
     progress.show("running", 0.456);
-    const std::string first = "tessera: after 10 s at 46 %, frame_3: running\n";
+    const std::string first = "tessera: after 10 s at 46 %, running\n";
     CHECK(log.text() == first);
     log.at(19.9);
     progress.show("running", 0.6);
@@ -69,21 +69,21 @@ TEST_CASE("progress in a log: one line every ten seconds, none for shorter work"
     // Without a call of show(), and late: one line at 47 s, none for 20, 30 and 40.
     log.at(47.5);
     progress.report_if_due();
-    const std::string second = first + "tessera: after 47 s at 60 %, frame_3: running\n";
+    const std::string second = first + "tessera: after 47 s at 60 %, running\n";
     CHECK(log.text() == second);
     log.at(49);
     progress.show("checking", 0.9);
     CHECK(log.text() == second);
     log.at(50);
     progress.report_if_due();
-    CHECK(log.text() == second + "tessera: after 50 s at 90 %, frame_3: checking\n");
+    CHECK(log.text() == second + "tessera: after 50 s at 90 %, checking\n");
 }
 
 TEST_CASE("progress in a log: finished work is not shown, and work that begins late waits for its turn") {
     const Log log(false);
     log.at(35);
     {
-        Progress progress("", log.display());
+        Progress progress(log.display());
         progress.show("measuring", 0.1);
         log.at(39);
         progress.show("measuring", 0.2);
@@ -95,7 +95,7 @@ TEST_CASE("progress in a log: finished work is not shown, and work that begins l
         CHECK(log.text().empty());  // nothing was printed at 40 s
         log.at(50);
     }
-    Progress next("", log.display());
+    Progress next(log.display());
     next.show("writing", 0);
     CHECK(log.text().empty());
     log.at(60);
@@ -105,9 +105,9 @@ TEST_CASE("progress in a log: finished work is not shown, and work that begins l
 
 TEST_CASE("progress on a terminal: a bar is overwritten ten times a second, and no lines are printed") {
     const Log log(true);
-    Progress progress("frame_3: ", log.display());
+    Progress progress(log.display());
     progress.show("running", 0.5);
-    const std::string half = "\r\x1b[K[" + std::string(15, '=') + std::string(15, ' ') + "]  50 %  frame_3: running";
+    const std::string half = "\r\x1b[K[" + std::string(15, '=') + std::string(15, ' ') + "]  50 %  running";
     CHECK(log.text() == half);
     log.at(0.099);
     progress.show("running", 0.6);
@@ -116,7 +116,7 @@ TEST_CASE("progress on a terminal: a bar is overwritten ten times a second, and 
     progress.report_if_due();
     CHECK(log.text() == half);
     progress.show("running", 1);
-    const std::string all = half + "\r\x1b[K[" + std::string(30, '=') + "] 100 %  frame_3: running";
+    const std::string all = half + "\r\x1b[K[" + std::string(30, '=') + "] 100 %  running";
     CHECK(log.text() == all);
     progress.clear();
     progress.clear();
@@ -128,7 +128,7 @@ TEST_CASE("progress that cannot be written raises no error") {
     REQUIRE(full != nullptr);
     the_time = Clock::time_point{} + std::chrono::hours(1);
     for (const bool terminal : {false, true}) {
-        Progress progress("", {full, terminal, the_time, &now});
+        Progress progress({full, terminal, the_time, &now});
         the_time += std::chrono::seconds(25);
         CHECK_NOTHROW(progress.show("running", 0.5));
         CHECK_NOTHROW(progress.report_if_due());

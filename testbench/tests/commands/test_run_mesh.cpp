@@ -198,13 +198,10 @@ TEST_CASE("a run removes neither the mesh file nor the map file that it reads") 
     const TestFolder here;
     run(here.path(), "first", {"tests.generation_limit=1", "output.obj=true"});
     const std::string mesh = read_all(here.path() / "runs/first/mesh.obj");
-    for (const char* const frames : {"frames.count=1", "frames.count=2"}) {
-        refused(arguments_of({"mesh.source=file", "mesh.file=runs/first/mesh.obj", "output.folder=runs/first", frames}),
-                here.path(), {"its own base mesh", "mesh.obj"});
-        refused(
-            arguments_of({"map.source=file", "map.file=runs/first/picture.png", "output.folder=runs/first", frames}),
+    refused(arguments_of({"mesh.source=file", "mesh.file=runs/first/mesh.obj", "output.folder=runs/first"}),
+            here.path(), {"its own base mesh", "mesh.obj"});
+    refused(arguments_of({"map.source=file", "map.file=runs/first/picture.png", "output.folder=runs/first"}),
             here.path(), {"its own map", "picture.png"});
-    }
     CHECK(read_all(here.path() / "runs/first/mesh.obj") == mesh);
     // A file of another name in the folder is allowed.
     fs::copy(here.path() / "runs/first/mesh.obj", here.path() / "runs/first/base.obj");

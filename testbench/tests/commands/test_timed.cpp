@@ -205,7 +205,6 @@ TEST_CASE("timed run: a key without effect in the design is noted, and has none"
                !Contains("map.heights = \"fitted\" has no effect: map.source"));
     without_effect({"map.source=noise"}, "map.text", "\"other\"");
     without_effect({}, "map.channel", "\"R\"");
-    without_effect({}, "frames.first_scale", "0.1");
     without_effect({}, "output.trace_from", "5");
     without_effect({}, "hardware.direct_memory", "false");
     without_effect({}, "tests.highlight_angle", "60.0");

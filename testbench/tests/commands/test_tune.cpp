@@ -219,7 +219,6 @@ TEST_CASE("tune refuses wrong usage and unreachable goals, and writes nothing") 
     CHECK_THAT(tune({"--triangles", "500", "--set", "tests.normal=false", "--set", "tests.summed_height=false"}),
                Contains("both off"));
     CHECK_THAT(tune({"--triangles", "500", "--set", "tests.view_treshold=1"}), Contains("view_threshold"));
-    CHECK_THAT(tune({"--triangles", "500", "--set", "frames.count=3"}), Contains("frames.count"));
     CHECK_THAT(tune({"--triangles", "500", "--output", "map.exr"}), Contains(".toml"));
     CHECK_THAT(tune({"--triangles", "500", "--output", "a.toml", "--tried", "a.json"}), Contains("--tried"));
     CHECK_THAT(tune({"--triangles", "500", "--output", "a.toml", "--tried", "./a.toml"}), Contains("--tried"));

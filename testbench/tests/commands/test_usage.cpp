@@ -211,3 +211,33 @@ TEST_CASE("a reader that closes the pipe early ends the program quietly") {
     CHECK(end.exit_code == 0);
     CHECK(end.err.empty());
 }
+
+TEST_CASE("map.no_data holds for built-in maps, too") {
+    const TestFolder here;
+    const auto run_with = [&](const std::string& source, const std::string& no_data) {
+        return run_tessera(
+            Arguments{"run"} + set({"mode=functional", "output.picture=false", "map.source=" + source, "map.value=0.5",
+                                    "map.no_data=" + no_data, "map.width=32", "map.height=32", "output.folder=out"}),
+            here.path());
+    };
+    const ProgramEnd all = run_with("constant", "0.5");
+    CHECK(all.exit_code == 2);
+    CHECK_THAT(all.err, Contains("every texel of the built-in map"));
+    const ProgramEnd some = run_with("half_donut", "0");
+    INFO(some.text());
+    CHECK(some.exit_code == 0);
+    CHECK_THAT(some.out, Contains("note: map: ") && Contains("all checks passed"));
+}
+
+TEST_CASE("tune and rank print the notes on their inputs") {
+    const Arguments inputs = set({"map.no_data=0.7", "map.width=32", "map.height=32", "mesh.source=lattice",
+                                  "mesh.spacing=8", "hardware.height_test=summed_height"});
+    for (const Arguments& command :
+         {Arguments{"tune", "--triangles", "60", "--vary", "none"}, Arguments{"rank", "--output", "ranks"}}) {
+        const TestFolder here;
+        const ProgramEnd end = run_tessera(command + inputs, here.path());
+        INFO(end.text());
+        CHECK(end.exit_code == 0);
+        CHECK_THAT(end.out, Contains("  note: map: No texel has the value 0.7 of map.no_data"));
+    }
+}

@@ -150,7 +150,7 @@ TEST_CASE("a killed run leaves no partial file, and no job beside another run's 
 
 TEST_CASE("a folder that is not for a run is refused") {
     const TestFolder here;
-    for (const char* const folder : {"mine", "runs/frame_001"})
+    for (const char* const folder : {"mine", "runs"})
         fs::create_directories(here.path() / "work/deep" / folder);
     const auto folder_refused = [&](const std::string& folder, const Arguments& more = {}) {
         return refused(Arguments{"run"} + more + set({"output.folder=" + folder, "map.width=16"}),
@@ -159,8 +159,8 @@ TEST_CASE("a folder that is not for a run is refused") {
     for (const std::string& folder : {std::string("/"), std::string(".."), std::string("../.."), here.path().string()})
         CHECK_THAT(folder_refused(folder), Contains("contains the current directory"));
 
-    write_all(here.path() / "work/deep/runs/frame_001/mesh.ply", "mine");
-    CHECK_THAT(folder_refused("runs", {"--set", "frames.count=2"}), Contains("runs/frame_001/mesh.ply"));
+    write_all(here.path() / "work/deep/runs/mesh.ply", "mine");
+    CHECK_THAT(folder_refused("runs"), Contains("runs/mesh.ply"));
 
     // The default job, with every key: the output of --dump-config does not belong to a run.
     const ProgramEnd dumped = run_tessera({"run", "--dump-config"}, here.path());

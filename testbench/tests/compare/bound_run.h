@@ -4,7 +4,6 @@
 #include <string>
 
 #include "testbench/compare/bound_check.h"
-#include "testbench/job/frame_job.h"
 #include "testbench/job/job_paths.h"
 #include "testbench/job/validate_job.h"
 #include "testbench/machine/inputs.h"
@@ -14,23 +13,17 @@
 
 namespace tessera::testing {
 
-/// Of several frames one.
-inline Inputs inputs_of(const std::string& settings, std::int64_t frame) {
+inline Inputs inputs_of(const std::string& settings) {
     Job job = with_settings({}, settings);
     validate(job);
     resolve_paths(job, {});
-    Inputs inputs = load_inputs(job);
-    if (Job& all = inputs.resolved.job; all.frames.count > 1) {
-        all = frame_job(all, frame % all.frames.count);
-        validate(all);
-    }
-    return inputs;
+    return load_inputs(job);
 }
 
 /// A job as the program runs it, without the machine: its mesh is the bare recursion's.
 struct BoundRun {
-    explicit BoundRun(const std::string& settings, std::int64_t frame = 0)
-        : inputs(inputs_of(settings, frame)), setup(make_setup(job, inputs.mesh, inputs.map)) {
+    explicit BoundRun(const std::string& settings)
+        : inputs(inputs_of(settings)), setup(make_setup(job, inputs.mesh, inputs.map)) {
         BareRecursion bare(setup);
         finished = bare.run(emitted, most_edges) < most_edges;
         mesh = recorded_mesh(

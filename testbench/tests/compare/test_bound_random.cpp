@@ -230,10 +230,6 @@ std::string random_settings(Random& random, const std::vector<std::string>& map_
     set("mesh.depth", random.real(0.5, 20));
     set("displacement.scale", random.real(-1, 1));
     set("displacement.bias", random.real(-1, 1));
-    if (random.chance(15)) {
-        set("frames.count", random.integer(2, 5));
-        set("frames.first_scale", random.real(-1, 1));
-    }
     set("hardware.height_test", random.chance(95) ? "rank" : pick({"summed_height", "curvature", "mipmap"}));
     if (random.chance(93) && text.find("=rank") != std::string::npos)
         set("hardware.triangulation", "greatest_rank");
@@ -299,11 +295,10 @@ TEST_CASE("bound: of 300 jobs at random over all keys none exceeds it without a 
             one_more(true);
         if (random.chance(40))
             one_more(false);
-        const std::int64_t frame = random.integer(0, 1000);
-        INFO("trial " << trial << ", frame " << frame << ": " << settings);
+        INFO("trial " << trial << ": " << settings);
         std::optional<BoundRun> made;
         try {
-            made.emplace(settings, frame);
+            made.emplace(settings);
         } catch (const InputError&) {
             ++refused;
             continue;

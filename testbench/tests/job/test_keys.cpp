@@ -90,7 +90,6 @@ TEST_CASE("every member of Job has a key") {
     CHECK(keys_in("check") == count_members<Job::Check>());
     CHECK(keys_in("limits") == count_members<Job::Limits>());
     CHECK(keys_in("output") == count_members<Job::Output>());
-    CHECK(keys_in("frames") == count_members<Job::Frames>());
     // Job itself: its tables, its top-level keys, and `folder`, which is not a key.
     CHECK(job_tables().size() - 1 + keys_in("") + 1 == count_members<Job>());
 }

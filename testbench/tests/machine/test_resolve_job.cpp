@@ -150,16 +150,6 @@ TEST_CASE("the camera looks at the displaced box from the right of the front, an
         CHECK(glm::length(direction - glm::dvec3(right, above, front)) < 1e-5);
         CHECK(filled_part(camera, corners({100, 200, 300}, {102, 204, 306})) == Approx(0.9).epsilon(2e-5));
     }
-    SECTION("with room for every frame") {
-        Job job;
-        job.displacement.scale = 1;
-        job.frames = {5, -3};
-        const Job::Camera camera = resolve_job(job, make_plane(3, 3, 2, 2), map_of(0, 1)).job.camera;
-        CHECK(camera.target == std::array<double, 3>{0, 0, -1});
-        CHECK(filled_part(camera, corners({-1, -1, -3}, {1, 1, 1})) == Approx(0.9).epsilon(2e-5));
-        job.frames.count = 1;  // first_scale is not used
-        CHECK(resolve_job(job, make_plane(3, 3, 2, 2), map_of(0, 1)).job.camera.target[2] == 0.5);
-    }
     SECTION("for any size of the model") {
         for (const double size : {1e-5, 1e-3, 1.0, 1e5, 1e9}) {
             const Job::Camera camera = resolve_job(Job{}, make_sphere(8, 4, size), map_of(0, 0)).job.camera;
@@ -241,9 +231,6 @@ TEST_CASE("a displacement that is too large is refused with its cause, before a 
     CHECK(refusal(job, map_of(35, 3.4e38F)).empty());
     job.displacement.bias = 1e11;
     CHECK_THAT(refusal(job, map_of(35, 1235)), Contains("divide displacement.bias by 1048576"));
-    job.displacement.bias = 0;
-    job.frames = {3, -1e9};
-    CHECK_THAT(refusal(job, map_of(35, 1235)), Contains("displacement.scale = -1e+09"));
 }
 
 TEST_CASE("setup and golden model refuse a job that is not resolved as a program error") {

@@ -76,7 +76,7 @@ TEST_CASE("the default job's bytes on the bus match the table in README.md") {
         cpu.wait_for_interrupt();
     };
     bench.run();
-    const HostTraffic host = first_frame_traffic(setup);
+    const HostTraffic host = host_traffic(setup);
     const std::uint64_t tables = host.displacement_map + host.normal_map + host.summed_height_table;
     const std::uint64_t mesh = setup.base_triangles.size() * base_triangle_bytes;
     CHECK(bench.memory.bytes_read == tables + mesh);
