@@ -74,8 +74,8 @@ void Host::check_inputs() const {
     const datapath::Registers& registers = machine_.registers();
     if (total() == 0)
         return;
-    if (const std::string excluded = datapath::excluded_register(registers); !excluded.empty())
-        refuse("the register " + excluded + " has a value that the machine's arithmetic excludes (preconditions.h)");
+    if (const std::string impossible = datapath::impossible_register(registers); !impossible.empty())
+        refuse("the register " + impossible + " has a value that the machine's arithmetic excludes (preconditions.h)");
     for (std::size_t k = first_; k < triangles_.size(); k += step_)
         for (const datapath::Vertex& vertex : triangles_[k].vertices)
             if (!datapath::fits_formats(vertex, registers.formats))

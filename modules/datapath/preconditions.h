@@ -21,7 +21,7 @@ constexpr bool fits_formats(const Vertex& v, const Formats& f) {
     return v.texture.u <= most_texels && v.texture.v <= most_texels && (v.handedness == 1 || v.handedness == -1);
 }
 
-/// A register with a value that the arithmetic excludes: by name; empty if there is none.
+/// A register with a value that it can hold, but that the arithmetic excludes: by name; empty if there is none.
 inline std::string excluded_register(const Registers& r) {
     // The largest threshold of the Summed Height Test, for each unit of measure (edge_tests.h).
     constexpr std::uint64_t most_sum = std::uint64_t{1} << (summed_height_threshold_bits - 1);
@@ -35,13 +35,18 @@ inline std::string excluded_register(const Registers& r) {
         return "tests.summed_height_threshold";
     if (r.light.ambient > most_ambient)
         return "light.ambient";
-    std::string excluded;
+    return {};
+}
+
+/// The same, or one with a value that it cannot hold.
+inline std::string impossible_register(const Registers& r) {
+    std::string impossible = excluded_register(r);
     visit_registers(r, [&](const Register& field, const auto& values) {
         for (const std::int64_t value : values)
             if (!holds(field, value))
-                excluded = field.name;
+                impossible = field.name;
     });
-    return excluded;
+    return impossible;
 }
 
 }  // namespace tessera::datapath

@@ -17,7 +17,7 @@ bool is_of_the_design(const DeviceRegister& r) {
 }  // namespace
 
 int program_registers(const tessera_platform& platform, const datapath::Registers& registers) {
-    if (!datapath::excluded_register(registers).empty())
+    if (!datapath::impossible_register(registers).empty())
         return TESSERA_BAD_VALUE;
     const std::vector<DeviceRegister> map = register_map(registers, {});
     for (const DeviceRegister& r : map) {
