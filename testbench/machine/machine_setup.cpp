@@ -77,15 +77,6 @@ void fit_heights_to_own_mesh(std::int64_t most_triangles, MachineSetup& setup) {
             "largest distance from the surface; the map's own are used");
 }
 
-double largest_extent(const BaseMesh& mesh) {
-    glm::dvec3 low(HUGE_VAL), high(-HUGE_VAL);
-    for (const BaseVertex& vertex : mesh.vertices) {
-        low = glm::min(low, vertex.position);
-        high = glm::max(high, vertex.position);
-    }
-    return std::max({high.x - low.x, high.y - low.y, high.z - low.z});
-}
-
 /// A sentence for the report if the map's values are all one, or so few of those that displacement.scale spans that the
 /// surface is nearly flat (metres in 16 bits), or lie far beyond them and displace by more than the mesh's size; else
 /// empty.
@@ -102,8 +93,10 @@ std::string unused_range_remark(const Job& job, const BaseMesh& mesh, const Heig
     const MapDisplacement displacement = MapDisplacement::from(job.displacement, map);
     const double span = map.span_high - map.span_low;
     const auto [lowest, highest] = std::minmax({displacement.of(low), displacement.of(high)});
-    const bool far =
-        (low < map.span_low - span || high > map.span_high + span) && std::max(-lowest, highest) > largest_extent(mesh);
+    const auto [nearest, farthest] = bounds_of(mesh.vertices);
+    const glm::dvec3 sides = farthest - nearest;
+    const double extent = std::max({sides.x, sides.y, sides.z});
+    const bool far = (low < map.span_low - span || high > map.span_high + span) && std::max(-lowest, highest) > extent;
     if (part >= least_part && !far)
         return {};
     const std::string spans = fmt::format(

@@ -25,9 +25,9 @@ constexpr double rounding = 1.0 / 16;  // texels; of the program that wrote a fi
 
 /// Whether a clamped border stretches the map across a triangle: one corner beyond it, another on its other side.
 bool is_crossed(const std::array<double, 3>& at, std::uint32_t size) {
-    const auto [low, high] = std::minmax_element(at.begin(), at.end());
-    return (*low * size<-rounding&& * high * size> rounding) ||
-           (*high * size > size + rounding && *low * size < size - rounding);
+    const auto [least, most] = std::minmax_element(at.begin(), at.end());
+    const double low = *least * size, high = *most * size;
+    return (low < -rounding && high > rounding) || (high > size + rounding && low < size - rounding);
 }
 
 std::uint32_t to_texture(double coordinate, std::uint32_t size, bool clamp, const Format& format, bool& clamped) {

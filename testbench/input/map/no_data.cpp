@@ -414,8 +414,11 @@ std::string remark_on_patches(const HeightMap& map, const Between& rest, bool no
     const auto lows = rest.outermost<2>(true), highs = rest.outermost<2>(false);
     const double span = static_cast<double>(highs[0].value) - static_cast<double>(lows[0].value);
     Candidates candidates = candidates_for(map, lows, highs, normalised);
+    const bool any_value = map.source_units == 1 && !normalised;
+    if (candidates.empty() && !any_value)
+        return {};
     Neighbours neighbours(map, rest);
-    if (map.source_units == 1 && !normalised) {
+    if (any_value) {
         constexpr std::size_t least_border = 16;  // of a square of inner_value.fewest texels in a corner of the map
         for (const float value : neighbours.at_steps(inner_value.far * span, least_border))
             if (value > lows[0].value && value < highs[0].value)
