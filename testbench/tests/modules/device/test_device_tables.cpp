@@ -17,6 +17,18 @@ std::unique_ptr<sc_core::sc_module> blocking(BaseProtocolBridge& bridge, const s
     return bound<BlockingMemory>(bridge, name, sc_core::sc_time(5, sc_core::SC_NS));
 }
 
+/// The error with which a frame ends on a device with these units.
+std::string error_of_frame(const MachineSetup& setup, UnitFactory& units) {
+    Bench bench({formats_of(setup)}, design_of(setup), false, true, {&units});
+    const FramePlaces places = bench.place(setup, 5000);
+    bench.cpu.program = [&](Processor&) {
+        tessera_driver& driver = bench.init();
+        set_frame(driver, setup, places);
+        run_frame(driver);
+    };
+    return error_of([] { sc_core::sc_start(); });
+}
+
 /// A frame, and another that fetches no tables; returns the first triangles.
 LitKeys two_frames(Bench& bench, const MachineSetup& setup, const FramePlaces& places) {
     LitKeys found, again;
@@ -195,24 +207,13 @@ const CaseTable<Stubborn> host_refused{
                    Contains("machine.pipeline.") && Contains(row.port + ": ") && Contains("transport_dbg"));
     }};
 
-}  // namespace
-
-namespace {
-
 const CaseTable<BenchMode> led_elsewhere{
     "a memory whose debug accesses lead elsewhere than its transactions is an error: ",
     {{"functional", false}, {"timed", true}},
     [](const BenchMode& mode) {
         const MachineSetup setup = setup_of(small_job(mode.timed));
         BridgedUnits units(setup.design.timing, one_stubborn("normal_map", Debug::elsewhere));
-        Bench bench({formats_of(setup)}, design_of(setup), false, true, {&units});
-        const FramePlaces places = bench.place(setup, 5000);
-        bench.cpu.program = [&](Processor&) {
-            tessera_driver& driver = bench.init();
-            set_frame(driver, setup, places);
-            run_frame(driver);
-        };
-        CHECK_THAT(error_of([] { sc_core::sc_start(); }),
+        CHECK_THAT(error_of_frame(setup, units),
                    Contains("normal_map: ") && Contains("lead debug accesses where transactions go"));
     }};
 
@@ -344,14 +345,7 @@ const CaseTable<BenchMode> overlapping{"a device whose tables lie over one anoth
                                            const MachineSetup setup = setup_of(small_job(mode.timed));
                                            SharedMemory memory("shared");
                                            BridgedUnits units(setup.design.timing, joined(memory));
-                                           Bench bench({formats_of(setup)}, design_of(setup), false, true, {&units});
-                                           const FramePlaces places = bench.place(setup, 5000);
-                                           bench.cpu.program = [&](Processor&) {
-                                               tessera_driver& driver = bench.init();
-                                               set_frame(driver, setup, places);
-                                               run_frame(driver);
-                                           };
-                                           CHECK_THAT(error_of([] { sc_core::sc_start(); }),
+                                           CHECK_THAT(error_of_frame(setup, units),
                                                       Contains("device_0.machine.") && Contains("of its own"));
                                        }};
 
