@@ -117,7 +117,7 @@ inline constexpr std::array<ErrorMeaning, 13> error_meanings{{
     {DeviceError::queue_full, "queue_full",
      "stopped: the waiting triangles would not fit the Triangle Queue's memory; 0"},
     {DeviceError::machine_stopped, "machine_stopped",
-     "stopped permanently: the machine's clock has halted, and a reset has no effect; 0"},
+     "refused or stopped: the machine's clock has halted, and a reset has no effect; 0"},
     {DeviceError::table_memory, "table_memory",
      "stopped: a memory outside the machine refused a table, or was changed by another; the bus address of the refused "
      "data, or 0"},

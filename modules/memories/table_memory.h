@@ -22,8 +22,8 @@ namespace tessera {
 /// the run.
 /// Timing: on chip banked_ports.h; for a table in off-chip memory, which a cache reads line by line (table_cache.h),
 /// the channel shared by all off-chip memory. b_transport, DMI: the latency, once per entry.
-/// Utilisation: the fraction of the busiest bank's port slots taken, or of cycles in which a request was held up,
-/// whichever is greater: bank conflicts delay requests while most ports are idle.
+/// Utilisation: modules/README.md, Accounting. (Decision: cycles in which a request is held up count, since bank
+/// conflicts delay requests while most ports are idle.)
 /// Errors: a write gives TLM_COMMAND_ERROR_RESPONSE, an address out of range TLM_ADDRESS_ERROR_RESPONSE.
 class TableMemory : public MemoryServer {
   public:
@@ -46,6 +46,8 @@ class TableMemory : public MemoryServer {
     std::uint64_t slots_taken() const { return channel_ != nullptr ? channel_cycles_ : ports_.slots_taken(); }
     std::uint64_t slots_per_cycle() const { return channel_ != nullptr ? 1 : ports_.slots_per_cycle(); }
 
+    /// Requests were held up in more cycles than the busiest bank's ports were in use.
+    bool delays_more_than_it_serves() const { return cycles_held_up() > ports_.occupied_cycles(); }
     std::uint64_t occupied_cycles() const override {
         return channel_ != nullptr ? channel_cycles_ : std::max(ports_.occupied_cycles(), cycles_held_up());
     }

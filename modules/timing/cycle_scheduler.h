@@ -93,10 +93,11 @@ sc_core::sc_time first_rising_edge(const sc_core::sc_clock& clock);
 
 /// The clock of timed mode: calls the processes scheduled for a cycle, and skips cycles without any.
 ///
-/// Within a cycle processes are called in the order of attachment: attach downstream units first, so that a place
-/// freed in a cycle is filled in the same cycle, through all full stages: the combinational ready of a pipeline without
-/// skid buffers. The simulation is then the same on every kernel. One SC_METHOD serves all processes: a wake-up sets a
-/// bit in a table instead of notifying an event.
+/// Within a cycle processes are called in the order of attachment, repeatedly, until none is due: a place freed in a
+/// cycle is filled in the same cycle, through all full stages: the combinational ready of a pipeline without skid
+/// buffers. The order decides only which of several units that access one memory in the same cycle is served first;
+/// downstream units first takes the fewest calls. The simulation is the same on every kernel. One SC_METHOD serves all
+/// processes: a wake-up sets a bit in a table instead of notifying an event.
 ///
 /// Capacity: 64 processes. If nothing is scheduled, the run is finished or in a deadlock.
 class CycleScheduler : public sc_core::sc_module {

@@ -23,7 +23,7 @@ enum class TriangleOrder {
 /// The behaviour of a full queue (timed mode).
 enum class QueueOverflow {
     spill,  ///< to off-chip memory
-    stall,  ///< holds Tessellation back: deadlocks when the whole pipeline is full
+    stall,  ///< holds back the unit before it: deadlocks when the whole pipeline is full
     error,  ///< halts the clock
 };
 

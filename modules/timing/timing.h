@@ -76,8 +76,8 @@ struct OffChipTiming {
 // clang-format on
 
 /// Clock period and the datasheet figures of every unit and memory. Defaults follow the paper where it states them
-/// (one port on the Summed Height Table: four cycles per rectangle; tests one edge after another). Declared only here;
-/// configuration and reports refer to them.
+/// (one port on the Summed Height Table: four cycles per rectangle; tests one edge after another). Declared only
+/// here, but for the latencies of height tests (their files in modules/datapath); configuration and reports refer to them.
 struct Timing {
     unsigned cycle_picoseconds = 5000;  ///< the clock's period
 #define TESSERA_TIMING(name, latency, interval, buffer, ...) UnitTiming name{latency, interval, buffer};

@@ -12,7 +12,7 @@
 namespace tessera {
 
 /// Common base of Pass or Tessellate in the paper's design (pass_or_tessellate.h) and in the family design
-/// (families/pass_or_tessellate.h): decides per edge, and culls finished triangles that face away.
+/// (family/pass_or_tessellate.h): decides per edge, and culls finished triangles that face away.
 class DecidingUnit : public Unit {
   public:
     StreamOutput<TriangleToLight> to_lighting{"to_lighting"};

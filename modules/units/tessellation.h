@@ -11,7 +11,7 @@
 
 namespace tessera {
 
-/// Common base of Tessellation in the paper's design and in the family design (families/tessellation.h).
+/// Common base of Tessellation in the paper's design and in the family design (family/tessellation.h).
 class TessellatingUnit : public Unit {
   public:
     /// In the family design, every triangle that is split and the vertices inserted on its edges: for the scoreboard.

@@ -18,7 +18,7 @@ namespace tessera {
 
 /// Triangle Queue (paper figure 7): waiting triangles, first in first out (the paper's) or last in first out.
 ///
-/// In:   triangles from Tessellation. Out: triangles to Get Triangle, and whether fewer triangles than the watermark
+/// In:   triangles from Tessellation, in the family design from Pass or Tessellate. Out: triangles to Get Triangle, and whether fewer triangles than the watermark
 ///       wait, whenever that changes: one bit, which Get Triangle receives in the same cycle and stores.
 /// Capacity: `capacity` triangles on chip, unbounded by default and in functional mode; the high-water mark shows what
 ///       a design needs. Beyond it triangles spill to off-chip memory: the newest (first in first out), or the oldest
@@ -26,7 +26,7 @@ namespace tessera {
 ///       later triangles go off chip, too, which keeps the order), or when at most half of it is in use (last in first
 ///       out, so that a triangle does not go back and forth).
 /// Timing: one triangle in and one out per interval; latency 1, interval 1 by default, from store to output.
-/// Waits for Tessellation, and for off-chip memory; held back by Get Triangle, and when full by off-chip memory.
+/// Waits for that unit, and for off-chip memory; held back by Get Triangle, and when full by off-chip memory.
 class TriangleQueue : public Unit {
   public:
     StreamInput<datapath::Triangle> from_tessellation{"from_tessellation"};

@@ -28,7 +28,7 @@ namespace tessera {
 ///       reads if longer. A Highlight Test adds its own latency, 1 by default, and nothing to the interval. An edge of
 ///       a base triangle starts when the map entries of all its corners in this unit have arrived.
 /// State: a base triangle's tag, and N' of its corners.
-/// Waits for Calculate New U and the normal map. Held back by the collector of the tests.
+/// Waits for Calculate New U (tests cheapest first: Sequence Tests) and the normal map. Held back by the collector of the tests.
 class NormalTest : public Stage<NormalOperands, NormalResult> {
   public:
     StreamInput<NormalOperands> input{"input"};

@@ -11,7 +11,7 @@
 namespace tessera {
 
 /// Common base of Sequence Tests in the triangle design (sequence_tests.h) and in the family design
-/// (families/sequence_tests.h): determines which tests an edge needs, and runs them in functional mode.
+/// (family/sequence_tests.h): determines which tests an edge needs, and runs them in functional mode.
 ///
 ///   Tex Coord Test (with Generation), View Test   every edge; they read no table
 ///   Normal Test                                   edges that none of these keeps whole; in the triangle design also

@@ -186,14 +186,24 @@ std::string relieving_key(const Machine& machine, std::uint64_t cycles, const Bo
     return found.bound() >= worth_raising ? key : "";
 }
 
+/// What a utilisation in per cent says of the unit (modules/README.md, Accounting).
+std::string use_text(const Machine& machine, const Unit& unit, double percent) {
+    if (uses_off_chip_channel(machine, unit))
+        return fmt::format("{:.1f} % of the off-chip channel's cycles are taken", percent);
+    const auto* const table = dynamic_cast<const TableMemory*>(&unit);
+    if (table != nullptr && table->delays_more_than_it_serves())
+        return fmt::format("in {:.1f} % of all cycles a request waits for its ports", percent);
+    return fmt::format("{:.1f} % of its {}", percent,
+                       is_memory(unit) ? "port slots are taken" : "throughput is used");
+}
+
 std::string binding_text(const Machine& machine, std::uint64_t cycles, const Bottleneck& found) {
     const bool several = found.first.units.size() > 1;
     std::string text = found.first.names();
     if (several)
         text += fmt::format(", which tie: {:.1f} % of their throughput is used", 100 * found.first.utilisation);
     else
-        text += fmt::format(": {:.1f} % of {}", 100 * found.first.utilisation,
-                            is_memory(*found.first.units[0]) ? "its port slots are taken" : "its throughput is used");
+        text += ": " + use_text(machine, *found.first.units[0], 100 * found.first.utilisation);
     const auto [waiting, most] = longest_wait(machine, found.first.units[0]);
     if (waiting != nullptr)
         text += fmt::format("; {} is delayed by {} in {:.1f} % of all cycles", unit_name(*waiting),
