@@ -196,7 +196,7 @@ inline Multiplications curvature_measure_multiplications(const Formats& f) {
 ///         and banks of the first, or, if the map has a cache, through Displace Vertex's cache.
 /// Arithmetic: a count of leading zeros and shifts for the level; three products of 4 x 4 bits, three of 8 x 7, their
 ///         sum, a shift, a compare.
-/// Timing: interval 1 by default. With one port a short edge's codes take three cycles.
+/// Timing: with one port a short edge's codes take three cycles.
 class CurvatureTest : public HeightTestFunctions {
   public:
     constexpr CurvatureTest() : HeightTestFunctions("curvature", 1) {

@@ -108,7 +108,7 @@ constexpr bool mipmap_test(std::uint64_t difference, const TestParameters& param
 ///         request each, since they may be in different banks. The map itself is level 0, so that short edges need no
 ///         second port.
 /// Arithmetic: a count of leading zeros and shifts for the level; two adds, a compare.
-/// Timing: interval 1 by default. With one port an edge's entries take three cycles.
+/// Timing: with one port an edge's entries take three cycles.
 class MipmapTest : public HeightTestFunctions {
   public:
     constexpr MipmapTest() : HeightTestFunctions("mipmap", 3) {

@@ -19,8 +19,7 @@ namespace tessera::datapath {
 ///         all three codes would save the vertices' bits, but takes three entries from ports that Displace Vertex needs
 ///         for every midpoint.)
 /// Arithmetic: subtract, shift, add, compare; sums modulo 2^n. With the area threshold two multiplications.
-/// Timing: interval 1 by default, or that of the table reads if longer: with one port a rectangle takes four cycles, an
-///         edge 12, a triangle 36.
+/// Timing: with one port a rectangle takes four cycles, an edge 12, a triangle 36.
 class SummedHeightTest : public HeightTestFunctions {
   public:
     constexpr SummedHeightTest() : HeightTestFunctions("summed_height", 3) {

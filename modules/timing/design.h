@@ -54,7 +54,7 @@ constexpr unsigned displace_vertex_latency(const Design& design) {
 }
 
 /// Most triangles that have left the queue but of which no part has reached Pass or Tessellate: one in Get Triangle,
-/// and one for each place in the units between; 33 by default. Pass or Tessellate has room for that many to wait for
+/// and one for each place in the units between. Pass or Tessellate has room for that many to wait for
 /// their parts.
 constexpr unsigned triangles_ahead_of_parts(const Design& design) {
     unsigned triangles = 1 + 1;
@@ -70,8 +70,7 @@ constexpr unsigned triangles_ahead_of_parts(const Design& design) {
 }
 
 /// Width of a triangle's tag: enough to distinguish all triangles between Get Triangle and Pass or Tessellate: those
-/// that wait there, one that Get Triangle still offers, and those whose parts have begun to arrive. 42 by default, so
-/// 6 bits.
+/// that wait there, one that Get Triangle still offers, and those whose parts have begun to arrive.
 constexpr int tag_bits(const Design& design) {
     // In the family design one triangle is being joined in Tessellation, and one is being tested.
     const unsigned triangles = triangles_ahead_of_parts(design) + 1 + design.timing.pass_or_tessellate.buffer +

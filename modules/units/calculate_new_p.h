@@ -15,7 +15,7 @@ namespace tessera {
 ///       serialise them. It costs five adders and a second use of the normalise unit, in Displace Vertex. Pass or
 ///       Tessellate checks that both t_ij agree.)
 /// Arithmetic: add, arithmetic shift right by 1.
-/// Timing: one vertex, normal or edge per interval; latency 1, interval 1 by default.
+/// Timing: one vertex, normal or edge per interval.
 /// Waits only for its input; held back by Displace Vertex.
 class CalculateNewP : public Stage<GeometryOperands, BasePoint> {
   public:

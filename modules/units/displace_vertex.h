@@ -21,8 +21,8 @@ namespace tessera {
 ///       too late for Transform: each base vertex would pass here twice. So a base triangle is complete when it leaves
 ///       Transform. On the job `head`, with 0.26 such vertices per finished triangle, this saves 0.20 cycles per
 ///       finished triangle, with two Normal Tests 0.07.)
-/// Timing: one vertex, normal or edge per interval; latency 6 plus the map read; interval 1 by default, or that of the
-///       map reads if longer: four cycles per edge with a bilinear filter and one port.
+/// Timing: one vertex, normal or edge per interval, or per map read if that takes longer: four cycles per edge with a
+///       bilinear filter and one port. The latency follows the read.
 /// Waits for the displacement map and the normal map; held back by Transform.
 class DisplaceVertex : public Stage<BasePoint, DisplacedPoint> {
   public:

@@ -25,7 +25,7 @@ namespace tessera {
 ///       with three Tessellation Tests units edge k and its two vertices to unit k. To Pass or Tessellate the triangle
 ///       itself, for the values that its parts do not carry. (Decision: a stream of their own, since with the parts
 ///       they would pass nine times through branches that do not use them.)
-/// Timing: one part per interval (1) on each output, the first a latency (1) after the triangle was accepted.
+/// Timing: one part per interval on each output, the first a latency after the triangle was accepted.
 /// Capacity: one triangle; the next is accepted when all parts of the last have been accepted.
 /// Waits for the Triangle Queue or the host; accepts a host triangle only while the queue is below its watermark
 /// and, in timed mode, has nothing to send, so that the queue does not grow while it has work. Held back by Calculate New P, Tessellation

@@ -11,7 +11,7 @@ namespace tessera {
 /// In:   TriangleToLight: P's, N's, t. Out: LitTriangle: P's, t, intensity, to the rasteriser.
 /// Arithmetic: three multiplications and a maximum per vertex, one multiplication; truncated to 8 bits, saturates
 ///       (counted).
-/// Timing: one triangle per interval; latency 4, interval 1 by default.
+/// Timing: one triangle per interval.
 /// Waits only for its input; held back by the rasteriser. Timed mode calls the rasteriser from an SC_METHOD, so it must
 ///       not call wait() (modules/device/frame_streams.h has a buffer for a thread that does).
 class Lighting : public Stage<TriangleToLight, LitTriangle> {

@@ -25,9 +25,9 @@ namespace tessera {
 ///       pass, as in the paper for inserted vertices); to Lighting, a finished triangle.
 /// Arithmetic: logic; for culling two products of screen bits + 1 and a compare.
 /// Check: both branches' t_ij must agree, else SC_ERROR.
-/// Timing: one triangle per interval; latency 1, interval 1 by default, from the arrival of its last part. In order of
-///       arrival: a complete triangle waits for older ones.
-/// Capacity: `buffer` incomplete triangles (8). A triangle waits at the input from Get Triangle until its first part
+/// Timing: one triangle per interval, a latency after its last part. In order of arrival: a complete triangle waits for
+///       older ones.
+/// Capacity: `buffer` incomplete triangles. A triangle waits at the input from Get Triangle until its first part
 ///       arrives from Transform and opens a place for it; that input has room for all triangles that can be ahead of
 ///       their parts (triangles_ahead_of_parts). Edges from Tessellation Tests that arrive earlier wait at their own
 ///       input, which holds as many edges as there are places. (Decision: if the first part of either branch opened a

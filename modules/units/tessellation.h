@@ -41,8 +41,8 @@ class TessellatingUnit : public Unit {
 ///       the triangle itself.
 /// Arithmetic: wiring; with the `shorter` diagonal two Manhattan lengths (6 subtractions, 4 adds), a margin (1
 ///       subtraction) and a compare. New vertices' generations saturate (counted), only with the Generation Test off.
-/// Timing: one child per interval, the first a latency after the triangle was accepted; latency 1, interval 1 by
-///       default. Capacity: one triangle; the next is accepted when the last child has been accepted.
+/// Timing: one child per interval, the first a latency after the triangle was accepted.
+/// Capacity: one triangle; the next is accepted when the last child has been accepted.
 /// Waits only for its input; held back by the Triangle Queue.
 class Tessellation : public TessellatingUnit {
   public:

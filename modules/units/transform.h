@@ -15,8 +15,7 @@ namespace tessera {
 ///       family design they reach the View Test with the edge.
 /// Arithmetic: for a position 9 multiplications, a reciprocal (a table and 4 more) and 2 more, saturate (counted); for
 ///       a normal 9. Area reports count both, 24, since an item of the family design has both.
-/// Timing: one vertex, normal or edge per interval and pipeline; latency 20, interval 1, one pipeline by default.
-///       Several pipelines are used round-robin; items stay in order.
+/// Timing: one vertex, normal or edge per interval and pipeline. Pipelines are used round-robin; items stay in order.
 /// Waits only for its input; held back by Pass or Tessellate.
 class Transform : public Stage<DisplacedPoint, ScreenPoint> {
   public:

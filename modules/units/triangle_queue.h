@@ -25,7 +25,7 @@ namespace tessera {
 ///       on chip (last in first out). They return when there is room on chip (first in first out; until none is left,
 ///       later triangles go off chip, too, which keeps the order), or when at most half of it is in use (last in first
 ///       out, so that a triangle does not go back and forth).
-/// Timing: one triangle in and one out per interval; latency 1, interval 1 by default, from store to output.
+/// Timing: one triangle in and one out per interval; the latency is from store to output.
 /// Waits for that unit, and for off-chip memory; held back by Get Triangle, and when full by off-chip memory.
 class TriangleQueue : public Unit {
   public:

@@ -23,7 +23,7 @@ struct EdgeToTest : TestOperands {
 /// In:   TestOperands: edges, with t_i, t_j; vertices of a base triangle, which go unchanged to the Normal Test only.
 /// Out:  t_ij = (t_i + t_j) >> 1, to all four tests, with the operands of the edge's ends that each test needs.
 /// Arithmetic: add, shift by 1.
-/// Timing: one edge or vertex per interval; latency 1, interval 1 by default.
+/// Timing: one edge or vertex per interval.
 /// Waits only for its input; held back by the slowest of the tests.
 class CalculateNewU : public Stage<TestOperands, EdgeToTest> {
   public:

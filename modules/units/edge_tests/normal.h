@@ -24,9 +24,9 @@ namespace tessera {
 ///       one vector, six compares with a second threshold and three with a cosine, at full width, so that the ends'
 ///       products equal the golden model's bit for bit; the differences are shared. (Decision: nine multipliers keep
 ///       the interval at 1. Three would do if each vertex carried its result, as one more bit.)
-/// Timing: one edge or vertex per interval; latency 9 plus the map read; interval 1 by default, or that of the map
-///       reads if longer. A Highlight Test adds its own latency, 1 by default, and nothing to the interval. An edge of
-///       a base triangle starts when the map entries of all its corners in this unit have arrived.
+/// Timing: one edge or vertex per interval, or per map read if that takes longer. The latency follows the read; a
+///       Highlight Test adds its own, and nothing to the interval. An edge of a base triangle starts when the map
+///       entries of all its corners in this unit have arrived.
 /// State: a base triangle's tag, and N' of its corners.
 /// Waits for Calculate New U (tests cheapest first: Sequence Tests) and the normal map. Held back by the collector of the tests.
 class NormalTest : public Stage<NormalOperands, NormalResult> {

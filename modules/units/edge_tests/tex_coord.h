@@ -12,7 +12,7 @@ namespace tessera {
 ///
 /// In:   TexCoordOperands. Out: TexCoordResult.
 /// Arithmetic: two compares of bit slices per axis; a maximum, an increment, a compare.
-/// Timing: one edge per interval; latency 1, interval 1 by default.
+/// Timing: one edge per interval.
 /// Waits for Calculate New U; held back by the collector of the tests.
 class TexCoordTest : public Stage<TexCoordOperands, TexCoordResult> {
   public:

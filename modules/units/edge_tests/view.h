@@ -15,7 +15,7 @@ namespace tessera {
 ///       behind the near plane counts as long; with both ends there it counts as invisible.
 /// Arithmetic: two subtractions, absolute values, add, compare; for a view-dependent Rank Test two adds, of the ends'
 ///       distances and depths.
-/// Timing: one edge per interval; latency 1, interval 1 by default.
+/// Timing: one edge per interval.
 /// State: for each base triangle between Transform and Pass or Tessellate its tag and the corners that have arrived:
 ///        as many places as Pass or Tessellate has, and two for the triangles that wait at its input.
 /// Waits for Calculate New U, and for an edge of a base triangle also for the screen positions of its vertices from

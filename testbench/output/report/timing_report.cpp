@@ -193,8 +193,7 @@ std::string use_text(const Machine& machine, const Unit& unit, double percent) {
     const auto* const table = dynamic_cast<const TableMemory*>(&unit);
     if (table != nullptr && table->delays_more_than_it_serves())
         return fmt::format("in {:.1f} % of all cycles a request waits for its ports", percent);
-    return fmt::format("{:.1f} % of its {}", percent,
-                       is_memory(unit) ? "port slots are taken" : "throughput is used");
+    return fmt::format("{:.1f} % of its {}", percent, is_memory(unit) ? "port slots are taken" : "throughput is used");
 }
 
 std::string binding_text(const Machine& machine, std::uint64_t cycles, const Bottleneck& found) {
