@@ -80,7 +80,7 @@ TEST_CASE("render: a mesh read back from mesh.ply equals the run's own, number f
 }
 
 TEST_CASE("render: positions keep full single precision for any position of the model") {
-    const MachineSetup setup = some_setup({1e6, -3e6, 2e6}, 1);
+    const MachineSetup setup = some_setup({1e6, -3e6, 2e6}, 4);
     const EmittedMesh run = some_mesh();
     const RenderMesh mesh = make_render_mesh(run, setup);
     std::size_t drawn = 0;
@@ -90,7 +90,7 @@ TEST_CASE("render: positions keep full single precision for any position of the 
         for (std::size_t k = 0; k < 3; ++k) {
             const datapath::Position& p = triangle.corners[k].displaced;
             const glm::dvec3 exact =
-                glm::dvec3(p.x, p.y, p.z) * std::ldexp(1.0, -setup.registers.formats.position.fraction) +
+                glm::dvec3(p.x, p.y, p.z) * std::ldexp(0.25, -setup.registers.formats.position.fraction) +
                 setup.model_scale.centre;
             const glm::dvec3 drawn_at = mesh.origin + glm::dvec3(mesh.positions[mesh.triangles[drawn].vertices[k]]);
             REQUIRE(glm::length(drawn_at - exact) < 1e-5);
