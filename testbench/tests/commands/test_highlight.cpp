@@ -1,6 +1,5 @@
 #include <catch2/catch.hpp>
 #include <string>
-#include <vector>
 
 #include "testbench/tests/support/program_runner.h"
 #include "testbench/tests/support/run_folder.h"
@@ -9,7 +8,6 @@
 
 using namespace tessera;
 using Catch::Contains;
-namespace fs = std::filesystem;
 
 namespace {
 
@@ -50,41 +48,6 @@ TEST_CASE("highlight run: the results are consistent, and every file names the t
     }
 }
 
-TEST_CASE("highlight run: functional and timed mode, with a queue that spills, give the same mesh") {
-    const TestFolder here;
-    const auto mesh_of = [&](const std::vector<std::string>& more) {
-        succeed(run_with({"tests.highlight=true", "map.width=64", "map.height=64", "output.picture=false",
-                          "output.obj=true"}) +
-                    set(more),
-                here.path());
-        const auto files = RunFolder(here.path() / "out").files();
-        return files.at("mesh.ply") + files.at("mesh.obj");
-    };
-    const std::string functional = mesh_of({"mode=functional"});
-    CHECK_THAT(functional, Contains("usemtl highlight_g"));
-    CHECK((mesh_of({"hardware.queue_capacity=4", "hardware.tests_units=3"}) == functional));
-}
-
-// A Highlight Test that never asks for a split: the mesh and every cycle are those of a design without it, except for
-// the latency.
-TEST_CASE("highlight run: it takes the cycles of an equally longer Normal Test") {
-    const TestFolder here;
-    const auto levels_of = [&](const std::vector<std::string>& more) {
-        succeed(run_with({"map.width=64", "map.height=64", "output.picture=false",
-                          "timing.summed_height_table_ports=12", "tests.highlight_normal_threshold=2"}) +
-                    set(more),
-                here.path());
-        const RunFolder run(here.path() / "out");
-        return std::to_string(run.count("timing", "cycles")) + "\n" + run.files().at("queue_levels.csv");
-    };
-    const std::string longer = levels_of({"timing.normal_test_latency=34"});
-    CHECK((levels_of({"tests.highlight=true", "timing.highlight_test_latency=25"}) == longer));
-    const std::string as_is = levels_of({});
-    CHECK((as_is != longer));
-    CHECK((levels_of({"tests.highlight=true", "timing.highlight_test_latency=0"}) == as_is));
-    CHECK((levels_of({"timing.highlight_test_latency=25"}) == as_is));  // no Highlight Test: it counts for nothing
-}
-
 TEST_CASE("highlight run: waveforms have its bit only in a design that has it") {
     const TestFolder here;
     const auto waveforms = [&](const std::string& highlight) {
@@ -95,17 +58,4 @@ TEST_CASE("highlight run: waveforms have its bit only in a design that has it") 
     };
     CHECK_THAT(waveforms("true"), Contains(" highlight $end") && Contains(" highlight [2:0] $end"));
     CHECK_THAT(waveforms("false"), !Contains("highlight"));
-}
-
-TEST_CASE("highlight run: values out of range are refused") {
-    const TestFolder here;
-    for (const std::string setting :
-         {"tests.highlight_angle=91", "tests.highlight_angle=-1", "tests.highlight_normal_threshold=2.5",
-          "timing.highlight_test_latency=-1", "tests.highlight=yes"}) {
-        const ProgramEnd end = run_tessera(run_with({setting}), here.path());
-        INFO(end.text());
-        CHECK(end.exit_code == 2);
-        CHECK_THAT(end.err, Contains(setting.substr(0, setting.find('='))));
-    }
-    CHECK(here.names().empty());
 }

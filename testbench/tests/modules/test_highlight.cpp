@@ -64,8 +64,6 @@ const CaseTable cycles(
         Timed{"86 cycles, as without the test", "", 86},
         // The Summed Height Test is complete in 41, the Normal Test in 43: 43 + 38, plus cycle 0.
         {"two ports: one cycle more than the 81 without the test", "timing.summed_height_table_ports=2", 43 + 38 + 1},
-        // 33 + 9 + 300 = 342.
-        {"a test latency of 300 cycles", "timing.highlight_test_latency=300", 342 + 38 + 1},
     },
     [](const Timed& row) {
         TimedRun simulation(one_triangle(with_settings(with_highlight(one_quad_job()), row.settings)));

@@ -1,10 +1,12 @@
 #include <catch2/catch.hpp>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "modules/datapath/map_entry.h"
 #include "modules/memories/table_memory.h"
 #include "modules/units/edge_tests/normal.h"
+#include "testbench/tests/support/case_table.h"
 #include "testbench/tests/support/timed_modules.h"
 
 // The Normal Test unit alone, through its sockets, with and without a Highlight Test.
@@ -97,23 +99,32 @@ struct Bench {
     }
 };
 
-const std::vector<int> without_highlight{datapath::normal_bit, 0, datapath::normal_bit};
+struct Row {
+    std::string name;
+    bool highlight_test;
+    unsigned latency;  ///< of the Highlight Test
+    std::uint64_t cycle;
+};
+
+// Taken in cycle 0, read in 1, compared 9 later, or later by the Highlight Test's latency; another edge each cycle.
+const CaseTable latencies(
+    "Normal Test unit ",
+    {
+        Row{"without a Highlight Test, whose latency has no effect", false, 7, 10},
+        {"with a Highlight Test of 0 cycles", true, 0, 10},
+        {"with a Highlight Test of one cycle", true, 1, 11},
+        {"with a Highlight Test of 7 cycles", true, 7, 17},
+    },
+    [](const Row& row) {
+        Timing timing;
+        timing.highlight_test_latency = row.latency;
+        Bench bench(row.highlight_test, timing);
+        CHECK(bench.run_timed() == std::vector<std::uint64_t>{row.cycle, row.cycle + 1, row.cycle + 2});
+        const int asked = datapath::normal_bit | (row.highlight_test ? datapath::highlight_bit : 0);
+        CHECK(bench.tests() == std::vector<int>{asked, 0, asked});
+    });
 
 }  // namespace
-
-// Taken in cycle 0, read in 1, compared 9 later; another edge each cycle.
-TEST_CASE("Normal Test unit without a Highlight Test: 10 cycles with the read") {
-    Bench bench(false, {});
-    CHECK(bench.run_timed() == std::vector<std::uint64_t>{10, 11, 12});
-    CHECK(bench.tests() == without_highlight);
-}
-
-TEST_CASE("Normal Test unit with a Highlight Test: one more cycle, still one edge per cycle") {
-    Bench bench(true, {});
-    CHECK(bench.run_timed() == std::vector<std::uint64_t>{11, 12, 13});
-    const int both = datapath::normal_bit | datapath::highlight_bit;
-    CHECK(bench.tests() == std::vector<int>{both, 0, both});
-}
 
 // Of a triangle only vertex 0 is new: its N' is `up`, that of the others as the edges carry it.
 TEST_CASE("Normal Test unit: N' of a new vertex is its own, that of any other the edge's") {
@@ -130,13 +141,6 @@ TEST_CASE("Normal Test unit: N' of a new vertex is its own, that of any other th
     bench.edges.insert(bench.edges.begin(), vertex);
     bench.run_timed();
     CHECK(bench.tests() == std::vector<int>{0, 0, 0});
-}
-
-TEST_CASE("Normal Test unit with a Highlight Test of 7 cycles") {
-    Timing timing;
-    timing.highlight_test_latency = 7;
-    Bench bench(true, timing);
-    CHECK(bench.run_timed() == std::vector<std::uint64_t>{17, 18, 19});
 }
 
 TEST_CASE("Normal Test unit with a Highlight Test, blocking transport: the same bits, one more cycle") {
