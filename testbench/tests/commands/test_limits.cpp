@@ -115,20 +115,10 @@ TEST_CASE("limits: a polygon too expensive to cut is refused") {
                   {"a.obj:65537", "65536 corners", "1000000000 steps"});
 }
 
-TEST_CASE("limits: a hundred million triangles are refused before any is made") {
-    refused({"mesh.columns=10000", "mesh.rows=5000"}, ExitCode::bad_input, {"`mesh.columns` = 10000", "2048"});
-    refused({"mesh.rows=50000000"}, ExitCode::bad_input, {"`mesh.rows` = 50000000", "2048"});
+TEST_CASE("limits: too many triangles and too long a text are refused before any is made") {
     for (const char* const source : {"plane", "cylinder", "sphere"})
         refused({std::string("mesh.source=") + source, "mesh.columns=2048", "mesh.rows=2048"}, ExitCode::resource_limit,
                 {"mesh.columns = 2048", "mesh.rows", "the limit is 4000000"});
-}
-
-TEST_CASE("limits: maps, texts and viewports that are far too large are refused") {
-    refused({"map.width=1000000000"}, ExitCode::bad_input, {"`map.width` = 1000000000", "4096"});
-    refused({"map.height=9223372036854775807"}, ExitCode::bad_input, {"`map.height`", "4096"});
-    refused({"camera.viewport_width=2000000000"}, ExitCode::bad_input, {"`camera.viewport_width`", "16384"});
-    refused({"map.source=text", "map.text=" + std::string(5000, 'a')}, ExitCode::bad_input,
-            {"`map.text`", "5000 bytes", "4096"});
     refused({"map.source=text", "map.width=4096", "map.text=" + std::string(4000, 'a')}, ExitCode::bad_input,
             {"map.text", "4096 x 264", "Shorten the text"});
 }
@@ -180,7 +170,7 @@ TEST_CASE("limits: short headers that claim gigabytes are refused") {
     }
 }
 
-TEST_CASE("limits: TOML that is endless, too deep or of another encoding is refused") {
+TEST_CASE("limits: TOML that is too deep or endless is refused") {
     const TestFolder here;
     const auto check_job = [&](const std::string& text, const std::string& words) {
         write_all(here.path() / "job.toml", text);
@@ -188,10 +178,7 @@ TEST_CASE("limits: TOML that is endless, too deep or of another encoding is refu
                       {"job.toml:", words});
     };
     check_job("a = " + std::string(500'000, '['), "nested");
-    check_job("[" + std::string(500'000, '.') + "]", "dots in one line");
     check_job(std::string(2'000'000, '#'), "over 1048576 bytes");
-    check_job(std::string("[\0m\0e\0s\0h\0]\0", 12), "not TOML");
-    check_job("[map]\ntext = \"caf\xe9\"\n", "utf-8");
 }
 
 TEST_CASE("limits: a path that is not a regular file is refused by every command") {

@@ -366,6 +366,7 @@ TEST_CASE("settings of the command line set their keys or are refused") {
     CHECK_THAT(set_error_of("mesh.colums=3"),
                Equals("--set mesh.colums=3: unknown key `mesh.colums`; did you mean `mesh.columns`?"));
     CHECK_THAT(set_error_of("mesh.columns=-1"), Contains("out of range; the range is 0 .. 2048 quads"));
+    CHECK_THAT(set_error_of("mesh.columns=9223372036854775808"), Contains("`mesh.columns`"));
     CHECK_THAT(set_error_of("mesh.columns=three"), Contains("`mesh.columns` cannot be three; expected an integer"));
     CHECK_THAT(set_error_of("mesh.columns="), Contains("has no value"));
     CHECK_THAT(set_error_of("mesh.columns"), Contains("expected table.key=value"));

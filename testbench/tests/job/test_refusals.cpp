@@ -104,7 +104,11 @@ TEST_CASE("every number's range holds at its ends and refuses beyond them") {
         CHECK_THAT(too_high, Contains("out of range; the range is"));
         if (!(key.range.or_zero && below == 0))
             CHECK_THAT(parse_error_of(one_key(key, around(below))), Contains("out of range; the range is"));
-        if (!whole) {
+        if (whole) {
+            using Limits = std::numeric_limits<std::int64_t>;
+            for (const std::int64_t value : {Limits::min(), Limits::max()})
+                CHECK_THAT(parse_error_of(one_key(key, std::to_string(value))), Contains("out of range; the range is"));
+        } else {
             for (const std::string value : {"nan", "-nan", "inf", "-inf"}) {
                 const std::string error =
                     parse_error_of(one_key(key, key.kind == KeyKind::vector ? "[1, " + value + ", 1]" : value));
@@ -176,6 +180,8 @@ TEST_CASE("TOML's own errors carry file, line and column") {
         {"[mesh\n", "job.toml:1:"},
         {"[mesh]\nrows = 99999999999999999999\n", "job.toml:2:"},
         {"[mesh]\nwidth = 1e999\n", "job.toml:2:"},
+        {std::string("[\0m\0e\0s\0h\0]\0", 12), "job.toml:1:"},
+        {"[map]\ntext = \"caf\xe9\"\n", "job.toml:2:"},
     };
     for (const auto& [text, place] : rows) {
         INFO(text);
@@ -251,10 +257,13 @@ TEST_CASE("keys that contradict each other are refused") {
             {"formats.generation_bits=3", {"`formats.generation_bits` = 3 counts to 7"}},
             {"formats.generation_bits=3; tests.generation_limit=7", {}},
 
-            {"camera.eye=[0, 0, 0]; camera.target=[0, 0, 0]", {"are the same point"}},
+            {"camera.eye=[0, 0, 0]; camera.target=[0, 0, 0]",
+             {"`camera.eye`", "`camera.target`", "are the same point"}},
+            {"camera.eye=[1e6,1e6,1e6]; camera.target=[1e6,1e6,999999.9999999]", {"are the same point"}},
             {"camera.up=[0, 0, 0]", {"`camera.up` = [0.0, 0.0, 0.0] has no direction"}},
             {"camera.eye=[0, 0, 5]; camera.target=[0, 0, 0]; camera.up=[0, 0, 1]",
              {"is parallel to the view direction [0.0, 0.0, -5.0]"}},
+            {"camera.eye=[0, 0, 5]; camera.target=[0, 0, 0]; camera.up=[0, 0, -5]", {"is parallel"}},
             {"camera.eye=[0, 0, 5]; camera.up=[0, 1, 0]", {}},
             {"hardware.light=[0, 0, 0]", {"`hardware.light`"}},
             {"hardware.tests_units=3", {}},
