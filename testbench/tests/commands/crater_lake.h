@@ -10,10 +10,8 @@ namespace tessera {
 /// Runs Crater Lake from 24 base triangles, as a user does.
 struct CraterLakeRun {
     std::uint64_t triangles;
-    double rms, largest;                // m, vertically at grid points
-    double rms_pixels, largest_pixels;  // the same in pixels, of the points in the picture
-
-    static constexpr double depth = 945;  // m, from the lake's bottom to the rim: full scale
+    double rms;         // m, vertically at grid points
+    double rms_pixels;  // the same in pixels, of the points in the picture
 
     /// Figures of the mesh with these additional settings; both commands must succeed.
     CraterLakeRun(const TestFolder& here, const Arguments& settings) {
@@ -29,9 +27,7 @@ struct CraterLakeRun {
         const auto vertical = [&](const char* name) { return error["vertical"][name]["value"].get<double>(); };
         triangles = RunFolder(here.path() / "run").count("run", "triangles_finished");
         rms = 1000 * vertical("rms");
-        largest = 1000 * vertical("max");
         rms_pixels = vertical("rms_pixels");
-        largest_pixels = vertical("max_pixels");
     }
 };
 

@@ -5,7 +5,7 @@
 
 #include "testbench/tests/commands/crater_lake.h"
 
-// Runs Crater Lake with a Rank Test from 24 base triangles, as a user does.
+// Runs Crater Lake with a Rank Test from 24 base triangles, as a user does. That a bound holds: compare/test_bound.cpp.
 
 using namespace tessera;
 using Catch::Contains;
@@ -34,18 +34,6 @@ TEST_CASE("rank: Crater Lake's error at 4,800 triangles, with entries of 8 bits"
     const CraterLakeRun found = ranked(here, {"--set", "tests.rank_threshold=0.038"});
     CHECK(found.triangles < 4800);
     CHECK(found.rms < 5.5);
-}
-
-TEST_CASE("rank: no grid point is farther from the mesh than the bound") {
-    const TestFolder here;
-    for (const char* const bits : {"6", "16"}) {
-        const CraterLakeRun found =
-            ranked(here, {"--set", "formats.rank_bits=0", "--set", std::string("formats.bound_bits=") + bits, "--set",
-                          "tests.bound_threshold=0.04"});
-        INFO(bits << " bits, " << found.triangles << " triangles");
-        CHECK(found.largest < 0.04 * CraterLakeRun::depth);
-        CHECK(found.largest > 0.02 * CraterLakeRun::depth);
-    }
 }
 
 TEST_CASE("tessera rank: a row has the figures of a run with its threshold, and every bound holds") {
@@ -104,19 +92,6 @@ TEST_CASE("rank: from the crater's rim 2,400 triangles show less than half the e
                                               "--set", "tests.view=true", "--set", "tests.view_threshold=0"});
     CHECK(found.triangles < 2400);
     CHECK(found.rms_pixels < 3.37 / 2);
-}
-
-TEST_CASE("rank: from the crater's rim no grid point appears farther from the mesh than the bound") {
-    const TestFolder here;
-    for (const char* const bits : {"8", "16"}) {
-        const CraterLakeRun found =
-            ranked(here, from_the_rim + Arguments{"--set", "tests.rank_view=per_point", "--set", "formats.rank_bits=0",
-                                                  "--set", std::string("formats.bound_bits=") + bits, "--set",
-                                                  "tests.bound_threshold=8"});
-        INFO(bits << " bits, " << found.triangles << " triangles");
-        CHECK(found.largest_pixels < 8);
-        CHECK(found.largest_pixels > 2);
-    }
 }
 
 TEST_CASE("rank: a base mesh that the test cannot split is reported, with one that it can") {
