@@ -217,23 +217,29 @@ TEST_CASE("timed run: a key without effect in the design is noted, and has none"
                    "timing.summed_height_table_latency", "3");
 }
 
-TEST_CASE("timed run: a full queue that stalls ends with exit code 3 and names the waiting units") {
+// What a report of a deadlock says: modules/test_deadlock.cpp.
+TEST_CASE("timed run: a deadlock, no progress within the bound and a full queue end with their exit codes") {
     const TestFolder here;
-    const ProgramEnd end =
-        run_tessera(timed_run("out", {"hardware.queue_capacity=8", "hardware.queue_overflow=stall"}), here.path());
-    INFO(end.text());
-    CHECK(end.exit_code == 3);
-    CHECK_THAT(end.err, Contains("tessera: deadlock: ") && Contains("triangle_queue: ") && Contains("(capacity 8)") &&
-                            Contains("waits for get_triangle") && Contains("hardware.queue_overflow = \"spill\"") &&
-                            Contains("pass_or_tessellate: ") && Contains("waits for tessellation"));
-}
-
-TEST_CASE("timed run: no progress within the bound ends with exit code 3") {
-    const TestFolder here;
-    const ProgramEnd end = run_tessera(timed_run("out", {"limits.cycles_without_progress=10"}), here.path());
-    INFO(end.text());
-    CHECK(end.exit_code == 3);
-    CHECK_THAT(end.err, Contains("tessera: livelock: ") && Contains("limits.cycles_without_progress = 10"));
+    struct Row {
+        Arguments settings;
+        int exit_code;
+        std::string says;
+    };
+    const Arguments queue{"hardware.queue_capacity=8"},
+        memory{"hardware.queue_capacity=2", "hardware.off_chip_triangles=5"};
+    const std::string full = "hardware.off_chip_triangles = 5";
+    for (const Row& row : {Row{queue + Arguments{"hardware.queue_overflow=stall"}, 3, "tessera: deadlock: "},
+                           {{"limits.cycles_without_progress=10"}, 3, "limits.cycles_without_progress = 10"},
+                           {queue + Arguments{"hardware.queue_overflow=error"}, 4, "hardware.queue_capacity = 8"},
+                           {memory + Arguments{"hardware.queue_order=fifo"}, 4, full},
+                           {memory + Arguments{"hardware.queue_order=lifo"}, 4, full}}) {
+        const ProgramEnd end = run_tessera(timed_run("out", row.settings), here.path());
+        INFO(end.text());
+        CHECK(end.exit_code == row.exit_code);
+        CHECK_THAT(end.err, Contains(row.says));
+        CHECK((end.exit_code == 3 || here.names().empty()));
+        fs::remove_all(here.path() / "out");
+    }
 }
 
 TEST_CASE("timed run: slow progress is not a livelock") {
@@ -246,34 +252,11 @@ TEST_CASE("timed run: slow progress is not a livelock") {
         succeed(timed_run("out", tiny + slow), here.path());
 }
 
-TEST_CASE("timed run: full off-chip memory ends with exit code 4 and names the key") {
-    const TestFolder here;
-    for (const std::string order : {"fifo", "lifo"}) {
-        const ProgramEnd end = run_tessera(
-            timed_run("out",
-                      {"hardware.queue_capacity=2", "hardware.off_chip_triangles=5", "hardware.queue_order=" + order}),
-            here.path());
-        INFO(end.text());
-        CHECK(end.exit_code == 4);
-        CHECK_THAT(end.err, Contains("hardware.off_chip_triangles = 5") && Contains("hardware.queue_capacity = 2"));
-        CHECK(here.names().empty());
-    }
-}
-
 TEST_CASE("timed run: a window or units to trace without a trace are refused") {
     const TestFolder here;
     for (const std::vector<std::string>& option :
          std::vector<std::vector<std::string>>{{"--trace", "5:50"}, {"--trace-units", "queue"}})
         refused(timed_run("out", {}) + option, here.path(), {option[0], "--vcd"});
-}
-
-TEST_CASE("timed run: a queue that may not overflow ends with exit code 4 and names the key") {
-    const TestFolder here;
-    const ProgramEnd end =
-        run_tessera(timed_run("out", {"hardware.queue_capacity=8", "hardware.queue_overflow=error"}), here.path());
-    INFO(end.text());
-    CHECK(end.exit_code == 4);
-    CHECK_THAT(end.err, Contains("hardware.queue_capacity = 8"));
 }
 
 TEST_CASE("timed run: the same job twice writes the same bytes") {
@@ -288,21 +271,4 @@ TEST_CASE("timed run: the same job twice writes the same bytes") {
     const RunFolder a(here.path() / "a/out"), b(here.path() / "b/out");
     require_consistent(a);
     require_same_files(a.files(), b.files());
-}
-
-TEST_CASE("timed run: the mesh files are functional mode's, byte for byte, stalls or not") {
-    const TestFolder here;
-    const auto mesh_of = [&](const std::string& folder, const Arguments& settings) {
-        succeed(timed_run(folder, small + settings), here.path());
-        auto files = RunFolder(here.path() / folder).files();
-        return files.at("mesh.ply");
-    };
-    const std::string functional = mesh_of("functional", {"mode=functional"});
-    CHECK(functional.size() > 10'000);
-    CHECK(mesh_of("timed", {}) == functional);
-    CHECK(mesh_of("stalled", {"timing.stalls_per_mille=500", "timing.stalls_seed=7", "hardware.queue_order=lifo",
-                              "hardware.queue_capacity=4"}) == functional);
-    CHECK(mesh_of("modern", {"hardware.design=modern"}) == functional);
-    CHECK(mesh_of("four_machines", {"hardware.design=modern", "hardware.machines=4"}) == functional);
-    CHECK(mesh_of("modern_functional", {"hardware.design=modern", "mode=functional"}) == functional);
 }
