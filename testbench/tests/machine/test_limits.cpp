@@ -71,25 +71,34 @@ const CaseTable designs(
         {"a map of one column", "map.source=noise map.width=1 map.height=64"},
         {"an eye within the heights, with edges that end on the near plane",
          "camera.eye=[0.01,0.02,0.1] camera.target=[1,0,0.1]"},
+        {"an eye in the base plane", "camera.eye=[0,0,0] camera.target=[0,1,0]"},
+        {"an eye below the surface", "camera.eye=[0,-3.2,-2.4]"},
+        {"a viewport of one column", "camera.viewport_width=1 camera.viewport_height=16384 camera.eye=[1,-3,2.5]"},
+        {"a field of view of 0.1 degrees", "camera.field_of_view=0.1 camera.eye=[1,-3,2.5]"},
+        {"a dot on the screen", "camera.eye=[0,-150,120]"},
+        {"heights below the base mesh", "displacement.scale=-0.25"},
+        {"heights of 0", "displacement.scale=0"},
+        {"thresholds of 0", "tests.normal_threshold=0 tests.summed_height_threshold=0 tests.view_threshold=0"},
     },
     [](const Row& row) { expect_whole_run(row, true); });
 
-const CaseTable whole("limits: ",
-                      {
-                          Row{"nothing to split, one place in the queue, stalls",
-                              "map.source=constant " + bounded_queue("fifo", 1) + random_stalls(106, 1000, 100)},
-                          {"no test requests a split", "tests.normal=false tests.summed_height=false"},
-                          {"a generation limit of 0", "tests.generation_limit=0"},
-                          {"a map of one texel", "map.width=1 map.height=1"},
-                          {"a map of one texel, repeated",
-                           "map.source=noise map.width=1 map.height=1 map.address_u=repeat map.address_v=repeat"},
-                          {"a viewport of one pixel, in which the View Test allows no split",
-                           "camera.viewport_width=1 camera.viewport_height=1"},
-                          {"a mesh behind the camera, which splits no edge",
-                           "camera.eye=[0,-3,0.5] camera.target=[0,-6,0.5]"},
-                          {"a mesh nearer than the near plane, which splits no edge", "camera.near_plane=1e6"},
-                      },
-                      [](const Row& row) { expect_whole_run(row, false); });
+const CaseTable whole(
+    "limits: ",
+    {
+        Row{"nothing to split, one place in the queue, stalls",
+            "map.source=constant " + bounded_queue("fifo", 1) + random_stalls(106, 1000, 100)},
+        {"no test requests a split", "tests.normal=false tests.summed_height=false"},
+        {"heights of 0, and no test of the map alone", "displacement.scale=0 tests.summed_height=false"},
+        {"a generation limit of 0", "tests.generation_limit=0"},
+        {"a map of one texel", "map.width=1 map.height=1"},
+        {"a map of one texel, repeated",
+         "map.source=noise map.width=1 map.height=1 map.address_u=repeat map.address_v=repeat"},
+        {"a viewport of one pixel, in which the View Test allows no split",
+         "camera.viewport_width=1 camera.viewport_height=1"},
+        {"a mesh behind the camera, which splits no edge", "camera.eye=[0,-3,0.5] camera.target=[0,-6,0.5]"},
+        {"a mesh nearer than the near plane, which splits no edge", "camera.near_plane=1e6"},
+    },
+    [](const Row& row) { expect_whole_run(row, false); });
 
 }  // namespace
 
