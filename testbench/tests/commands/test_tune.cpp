@@ -107,33 +107,17 @@ TEST_CASE("a tuned job whose map has changed since is refused") {
     CHECK_THAT(end.err, Contains("map.fingerprint = ") && Contains("was changed since"));
 }
 
-TEST_CASE("tune finds a Rank Test's threshold, and a Bound Test's bound holds") {
+TEST_CASE("tune finds a Bound Test's threshold for an error in metres, on one of the given lattices") {
     const TestFolder here;
     const std::string job = (source_folder() / "testbench/examples/jobs/crater_lake_rank.toml").string();
-    succeed({"tune", job, "--triangles", "2400", "--set", "formats.rank_bits=10"}, here.path());
-    const Json ranks = read_json(here.path() / "tuned.json");
-    CHECK(ranks.at("triangles") <= 2400);
-    CHECK(ranks.at("error").at("rms") < 8.1);  // metres
-    check_by_run_and_compare(here.path(), "tuned");
-    succeed({"tune", job, "--error", "60", "--metric", "max", "--grid", "lattice64"}, here.path());
+    succeed({"tune", job, "--error", "60", "--metric", "max", "--grid", "lattice64,lattice128"}, here.path());
     const Json bound = read_json(here.path() / "tuned.json");
+    CHECK(bound.at("height_test") == "rank");
+    CHECK(bound.at("error").at("unit") == "map unit");
     CHECK(bound.at("error").at("max") <= 60);
     CHECK(bound.at("triangles") < 2000);
-    CHECK_THAT(read_all(here.path() / "tuned.toml"), Contains("spacing = 64") && Contains("rank_bits = 0\n"));
+    CHECK_THAT(read_all(here.path() / "tuned.toml"), Contains("spacing = ") && Contains("rank_bits = 0\n"));
     check_by_run_and_compare(here.path(), "tuned");
-}
-
-TEST_CASE("tune finds a Curvature or a Mipmap Test's threshold") {
-    for (const char* const test : {"curvature", "mipmap"}) {
-        const TestFolder here;
-        succeed(Arguments{"tune", "--triangles", "600", "--tests", test, "--set", "tests.normal=false"} + small_map,
-                here.path());
-        const Json tuned = read_json(here.path() / "tuned.json");
-        CHECK(tuned.at("height_test") == test);
-        CHECK(tuned.at("triangles") <= 600);
-        CHECK(tuned.at("triangles") > 500);
-        check_by_run_and_compare(here.path(), "tuned");
-    }
 }
 
 TEST_CASE("tune chooses between the paper's tests and a Rank Test") {
@@ -160,32 +144,13 @@ TEST_CASE("tune works on a surface that is not a height field") {
     check_by_run_and_compare(here.path(), "tuned");
 }
 
-TEST_CASE("tune finds thresholds for Crater Lake") {
-    const TestFolder here;
-    const std::string job = (source_folder() / "testbench/examples/jobs/crater_lake_704.toml").string();
-    succeed({"tune", job, "--triangles", "3047", "--grid", "lattice16,lattice32", "--set", "tests.view=false"},
-            here.path());
-    const Json tuned = read_json(here.path() / "tuned.json");
-    CHECK(tuned.at("triangles") <= 3047);
-    CHECK(tuned.at("error").at("rms") < 8.2);  // metres; the sketch had 9.1
-    CHECK(tuned.at("error").at("unit") == "map unit");
-    check_by_run_and_compare(here.path(), "tuned");
-}
-
+// Others that name a remedy: remedies.h.
 TEST_CASE("tune refuses wrong usage and unreachable goals, and writes nothing") {
     const TestFolder here;
     const auto tune = [&](const Arguments& more) { return refused(Arguments{"tune"} + more + small_map, here.path()); };
     CHECK_THAT(tune({}), Contains("--triangles") && Contains("--error") && Contains("tune --help"));
     CHECK_THAT(tune({"--triangles", "5", "--error", "1"}), Contains("either"));
     CHECK_THAT(tune({"--triangles", "900", "--tests", "summed_height,curvature"}), Contains("one of them"));
-    CHECK_THAT(tune({"--triangles", "900", "--tests", "mipmap,curvature"}),
-               Contains("curvature and mipmap exclude each other"));
-    CHECK_THAT(tune({"--triangles", "900", "--tests", "rank", "--grid", "4x4"}), Contains("ranks need a lattice"));
-    CHECK_THAT(tune({"--triangles", "900", "--set", "hardware.height_test=rank", "--set",
-                     "hardware.test_order=cheap_first", "--set", "tests.rank_view=per_point"}),
-               Contains("tests.rank_view = \"per_point\"") && Contains("=none"));
-    CHECK_THAT(tune({"--triangles", "900", "--set", "map.heights=fitted"}), Contains("map.heights=given"));
-    CHECK_THAT(tune({"--triangles", "0"}), Contains("--triangles 0"));
     CHECK_THAT(tune({"--triangles", "-4"}), Contains("--triangles") && Contains("-4"));
     CHECK_THAT(tune({"--triangles", "17"}),
                Contains("18 triangles") && Contains("(mesh.columns, mesh.rows)") && !Contains("--grid"));
@@ -195,32 +160,13 @@ TEST_CASE("tune refuses wrong usage and unreachable goals, and writes nothing") 
     CHECK_THAT(tune({"--triangles", "100", "--set", "map.source=constant"}),
                Contains("the map has no relief, so that no edge requests a split; use at most 18"));
     CHECK_THAT(tune({"--error", "1e-9"}), Contains("allow at least that") && !Contains("--grid"));
-    CHECK_THAT(tune({"--triangles", "3000000"}), Contains("at most"));
-    CHECK_THAT(tune({"--triangles", "300000000"}), Contains("limits.triangles"));
     for (const char* number : {"18446744073709551615", "18446744073709551616", "99999999999999999999999"})
         CHECK_THAT(tune({"--triangles", number}), Contains(number) && Contains("limits.triangles"));
-    CHECK_THAT(tune({"--error", "0"}), Contains("--error"));
     CHECK_THAT(tune({"--error", "nan"}), Contains("--error"));
-    CHECK_THAT(tune({"--error", "1e-9"}), Contains("the least RMS error"));
-    CHECK_THAT(tune({"--triangles", "500", "--metric", "mean"}), Contains("rms or max"));
-    CHECK_THAT(tune({"--triangles", "500", "--tests", "normals"}), Contains("normals"));
-    CHECK_THAT(tune({"--triangles", "500", "--vary", "grid"}), Contains("grid"));
     CHECK_THAT(tune({"--triangles", "500", "--jobs", "0"}), Contains("--jobs"));
     CHECK_THAT(tune({"--triangles", "500", "--grid", "3x3", "absent.toml"}), Contains("no such job file"));
     CHECK_THAT(tune({"--triangles", "500", "--grid", "big"}), Contains("--grid big"));
     CHECK_THAT(tune({"--triangles", "500", "--grid", "0x4"}), Contains("--grid 0x4"));
-    CHECK_THAT(tune({"--triangles", "500", "--grid", "lattice24"}), Contains("power of two"));
-    CHECK_THAT(tune({"--triangles", "500", "--grid", "auto", "--set", "mesh.source=sphere"}), Contains("plane"));
-    CHECK_THAT(tune({"--triangles", "500", "--output", "absent/tuned.toml"}), Contains("absent"));
-    CHECK_THAT(tune({"--triangles", "500", "--output", "tuned.json"}), Contains("tuned.json"));
-    CHECK_THAT(tune({"--triangles", "500", "--output", ""}), Contains("--output"));
-    CHECK_THAT(tune({"--triangles", "500", "--set", "hardware.culling=back"}), Contains("culling"));
-    CHECK_THAT(tune({"--triangles", "500", "--set", "tests.highlight=true"}), Contains("tests.highlight"));
-    CHECK_THAT(tune({"--triangles", "500", "--set", "tests.normal=false", "--set", "tests.summed_height=false"}),
-               Contains("both off"));
-    CHECK_THAT(tune({"--triangles", "500", "--set", "tests.view_treshold=1"}), Contains("view_threshold"));
-    CHECK_THAT(tune({"--triangles", "500", "--output", "map.exr"}), Contains(".toml"));
-    CHECK_THAT(tune({"--triangles", "500", "--output", "a.toml", "--tried", "a.json"}), Contains("--tried"));
     CHECK_THAT(tune({"--triangles", "500", "--output", "a.toml", "--tried", "./a.toml"}), Contains("--tried"));
     CHECK(here.names().empty());
 }
