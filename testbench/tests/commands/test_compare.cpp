@@ -146,24 +146,17 @@ TEST_CASE("fitted heights raise neither the root mean square nor the largest dis
     CHECK(fitted.interpolated.mesh_to_reference.rms > 0);
 }
 
+// Others that name a remedy: remedies.h.
 TEST_CASE("compare refuses a folder that is not a run, and writes nothing") {
     const TestFolder here;
     refused({"compare"}, here.path(), {"RUN", "--help"});
     refused({"compare", "a", "b"}, here.path(), {"--help"});
     refused({"compare", "absent"}, here.path(), {"absent", "no such folder"});
-    refused({"compare", "."}, here.path(), {"no job.toml"});
-    run_job(here.path(), {"--set", "output.ply=false", "--set", "tests.normal_threshold=1"});
-    refused({"compare", "runs/half_donut"}, here.path(), {"output.ply=true"});
     run_job(here.path(), {"--set", "tests.normal_threshold=1"});
     const fs::path mesh = here.path() / "runs/half_donut/mesh.ply";
     const std::string bytes = read_all(mesh);
     write_all(mesh, bytes.substr(0, bytes.size() - 7));
     refused({"compare", "runs/half_donut"}, here.path(), {"mesh.ply", "announces"});
-    // Another job's mesh, with more base triangles than this one's.
-    run_job(here.path(),
-            {"--set", "tests.normal_threshold=1", "--set", "mesh.columns=9", "--set", "output.folder=runs/other"});
-    fs::copy_file(here.path() / "runs/other/mesh.ply", mesh, fs::copy_options::overwrite_existing);
-    refused({"compare", "runs/half_donut"}, here.path(), {"another job"});
     CHECK_FALSE(fs::exists(here.path() / "runs/half_donut/error.json"));
 }
 

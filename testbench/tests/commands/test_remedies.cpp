@@ -135,6 +135,7 @@ void follow(const std::vector<Remedy>& remedies) {
         const std::regex advice = pattern_of(remedy.advice);
         const ProgramEnd before = shell(remedy.trigger, here.path());
         INFO(remedy.trigger << "\n" << remedy.advice << "\n" << before.text());
+        CHECK((before.err.empty() || before.exit_code != 0));  // refused
         std::smatch found;
         const std::string text = before.out + before.err;
         CHECK(std::regex_search(text, found, advice));
