@@ -286,11 +286,7 @@ TEST_CASE("a height test of one's own that is wrong fails its run, and names the
          "static_cast<double>(formats.displacement.highest) / 2", "0.05", "tests.range_threshold = "},
         {"range_test.h", "highest - lowest > limit(1, r.tests)", "highest - lowest >= limit(1, r.tests)", "0",
          "FAILED: conformance"},
-        {"range_test.h", "table.rows = 1", "table.rows = 2", "0.05", "range_table.rows = 2"},
-        {"range_test.h", "latency = 2", "latency = 0", "0.05",
-         "height test range: latency = 0, but the range is 1 to 1000000", 2},
-        {"range_test.h", "\"range_threshold\"", "\"range_limit\"", "0.05",
-         "the register of range_limit has no key in the host's part", 2}};
+        {"range_test.h", "table.rows = 1", "table.rows = 2", "0.05", "range_table.rows = 2"}};
     // One library has all faults; FAULT chooses one by its number.
     const auto edit = [&](const char* file, const std::string& before, const std::string& after) {
         const fs::path path = home.path() / "edited" / file;
@@ -299,7 +295,6 @@ TEST_CASE("a height test of one's own that is wrong fails its run, and names the
     for (std::size_t k = 0; k < faults.size(); ++k)
         edit(faults[k].file, faults[k].right,
              "(fault(" + std::to_string(k) + ") ? (" + faults[k].wrong + ") : (" + faults[k].right + "))");
-    edit("range_test.h", "constexpr RangeTest()", "RangeTest()");
     edit("blocks.h", "#pragma once\n",
          "#pragma once\n#include <cstdlib>\n"
          "inline bool fault(int number) {\n"
@@ -317,7 +312,7 @@ TEST_CASE("a height test of one's own that is wrong fails its run, and names the
                              home.path(), {{"FAULT", std::to_string(k)}});
         INFO(end.text());
         CHECK(end.exit_code == fault.exit_code);
-        CHECK_THAT(fault.exit_code == 2 ? end.err : read_all(home.path() / "out/report.txt"), Contains(fault.says));
+        CHECK_THAT(read_all(home.path() / "out/report.txt"), Contains(fault.says));
     }
 }
 
