@@ -86,28 +86,16 @@ TakenTriangle GetTriangle::taken(const datapath::Triangle& triangle) {
     return {pass & tag_mask_, {pass, triangle.base}, triangle};
 }
 
-/// Functional mode: sends the branch's parts one after another.
-template <class Item>
-void GetTriangle::send_whole(Branch<Item>& branch, const TakenTriangle& taken, Parts parts,
-                             const sc_core::sc_time& start, sc_core::sc_time& delay) {
-    for (unsigned left = parts & branch.takes; left != 0; left &= left - 1) {
-        Item item;
-        make(item, taken, static_cast<Parts>(left & -left), work_);
-        sc_core::sc_time its_delay = start;
-        branch.output->transport(item, its_delay);
-        delay = std::max(delay, its_delay);
-    }
-}
-
 void GetTriangle::send_whole(const datapath::Triangle& triangle, sc_core::sc_time& delay) {
     TakenTriangle whole = taken(triangle);
     delay += latency_;
     const sc_core::sc_time start = delay;
     sc_core::sc_time its_delay = start;
     to_join.transport(whole, its_delay);
-    send_whole(geometry_, whole, parts_of(triangle, work_), start, delay);
+    const auto make_part = [&](auto& item, Parts part) { make(item, whole, part, work_); };
+    geometry_.transport(parts_of(triangle, work_), start, delay, make_part);
     for (std::size_t k = 0; k < tests_units_; ++k)
-        send_whole(tests_[k], whole, parts_to_test(triangle), start, delay);
+        tests_[k].transport(parts_to_test(triangle), start, delay, make_part);
 }
 
 void GetTriangle::take_from_host() {
@@ -146,13 +134,6 @@ void GetTriangle::b_transport_level(QueueLevel& level, sc_core::sc_time& delay) 
     delay = sc_core::SC_ZERO_TIME;
 }
 
-template <class Each>
-void GetTriangle::for_each_branch(Each&& each) {
-    each(geometry_);
-    for (std::size_t k = 0; k < tests_units_; ++k)
-        each(tests_[k]);
-}
-
 bool GetTriangle::begin(std::uint64_t cycle) {
     StreamInput<datapath::Triangle>* source = nullptr;
     if (!from_triangle_queue.empty()) {
@@ -169,32 +150,23 @@ bool GetTriangle::begin(std::uint64_t cycle) {
     source->pop();
     activity_.item_in(cycle);
     to_join.send(taken_);
-    geometry_.left = parts_of(taken_.triangle, work_);
+    geometry_.begin(parts_of(taken_.triangle, work_), cycle + timing_.latency);
     for (std::size_t k = 0; k < tests_units_; ++k)
-        tests_[k].left = static_cast<Parts>(parts_to_test(taken_.triangle) & tests_[k].takes);
-    for_each_branch([&](auto& branch) { branch.next = std::max(branch.next, cycle + timing_.latency); });
+        tests_[k].begin(parts_to_test(taken_.triangle), cycle + timing_.latency);
     return true;
 }
 
-/// Returns true if nothing is left to send and nothing is on offer.
-template <class Item>
-bool GetTriangle::send_parts(Branch<Item>& branch, std::uint64_t cycle) {
-    if (!branch.output->free())
-        return false;
-    if (branch.left == 0)
-        return true;
-    if (branch.next > cycle) {
-        wake_at(branch.next);
-        return false;
-    }
-    const auto part = static_cast<Parts>(branch.left & -branch.left);
-    branch.left = static_cast<Parts>(branch.left & ~part);
-    make(branch.offered, taken_, part, work_);
-    branch.next = cycle + timing_.interval;
-    const bool was_taken = branch.output->send(branch.offered);
-    if (branch.left != 0)
-        wake_at(branch.next);
-    return was_taken && branch.left == 0;
+/// Returns true if all parts of the triangle have been accepted.
+bool GetTriangle::send_parts(std::uint64_t cycle) {
+    const auto send = [&](auto& branch) {
+        return branch.send(
+            cycle, timing_.interval, [this](auto& item, Parts part) { make(item, taken_, part, work_); },
+            [this](std::uint64_t later) { wake_at(later); });
+    };
+    bool all = send(geometry_);
+    for (std::size_t k = 0; k < tests_units_; ++k)
+        all = send(tests_[k]) && all;
+    return all;
 }
 
 const sc_core::sc_object* GetTriangle::blocked_by() const {
@@ -213,9 +185,8 @@ void GetTriangle::step() {
     for (;;) {
         if (!sending_ && !begin(cycle))
             break;
-        bool all = to_join.free();
-        for_each_branch([&](auto& branch) { all = send_parts(branch, cycle) && all; });
-        if (!all)
+        const bool whole_sent = to_join.free();
+        if (!send_parts(cycle) || !whole_sent)
             break;
         sending_ = false;
         activity_.item_out(cycle);
@@ -252,7 +223,7 @@ void GetTriangle::trace_signals(Signals& signals) const {
     if (signals.when(signals.changed("parts_sent", parts_sent())))
         signals.value("part", part_bits, geometry_.offered.tag.part);
     Parts tests_left = 0;
-    for (const Branch<TestOperands>& branch : tests_)
+    for (const PartSender<TestOperands>& branch : tests_)
         tests_left = static_cast<Parts>(tests_left | branch.left);
     signals.value("geometry_left", 9, geometry_.left);
     signals.value("tests_left", 9, tests_left);

@@ -7,6 +7,7 @@
 #include "modules/sockets/stream_input.h"
 #include "modules/sockets/stream_output.h"
 #include "modules/stage/unit.h"
+#include "modules/units/part_sender.h"
 
 namespace tessera {
 
@@ -57,31 +58,15 @@ class GetTriangle : public Unit {
     void trace_signals(Signals& signals) const override;
 
   private:
-    /// One output: its parts of the triangle that are still to be sent, and the part on offer.
-    template <class Item>
-    struct Branch {
-        StreamOutput<Item>* output = nullptr;
-        Parts takes = 0;  // of a triangle
-        Parts left = 0;
-        Item offered;
-        std::uint64_t next = 0;
-    };
-
     void b_transport_from_host(datapath::Triangle& triangle, sc_core::sc_time& delay);
     void b_transport_from_triangle_queue(datapath::Triangle& triangle, sc_core::sc_time& delay);
     void b_transport_level(QueueLevel& level, sc_core::sc_time& delay);
     void take_from_host();
     void send_whole(const datapath::Triangle& triangle, sc_core::sc_time& delay);
-    template <class Item>
-    void send_whole(Branch<Item>& branch, const TakenTriangle& taken, Parts parts, const sc_core::sc_time& start,
-                    sc_core::sc_time& delay);
     TakenTriangle taken(const datapath::Triangle& triangle);
     void step() override;
     bool begin(std::uint64_t cycle);
-    template <class Item>
-    bool send_parts(Branch<Item>& branch, std::uint64_t cycle);
-    template <class Each>
-    void for_each_branch(Each&& each);
+    bool send_parts(std::uint64_t cycle);
     const sc_core::sc_object* blocked_by() const;
 
     UnitTiming timing_;
@@ -91,8 +76,8 @@ class GetTriangle : public Unit {
     std::uint32_t passes_ = 0;
     TakenTriangle taken_;  // timed mode: the triangle whose parts are being sent
     bool sending_ = false;
-    Branch<GeometryOperands> geometry_;
-    std::array<Branch<TestOperands>, most_tests_units> tests_;
+    PartSender<GeometryOperands> geometry_;
+    std::array<PartSender<TestOperands>, most_tests_units> tests_;
     std::size_t tests_units_;
     bool below_watermark_ = true;  // the Triangle Queue
     bool frame_begun_ = false;

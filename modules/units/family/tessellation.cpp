@@ -122,17 +122,8 @@ void FamilyTessellation::b_transport_from_transform(ScreenPoint& part, sc_core::
     joined_.close(part.tag.triangle);
     delay = start;
     to_pass_or_tessellate.transport(sent.family, delay);
-    for (unsigned left = sent.parts; left != 0; left &= left - 1) {
-        const auto bit = static_cast<Parts>(left & -left);
-        TestOperands item = operands(sent, bit);
-        sc_core::sc_time its_delay = start;
-        lane_of(bit).output->transport(item, its_delay);
-        delay = std::max(delay, its_delay);
-    }
-}
-
-FamilyTessellation::Branch& FamilyTessellation::lane_of(Parts part) {
-    return *std::find_if(lanes_.begin(), lanes_.end(), [&](const Branch& lane) { return (lane.takes & part) != 0; });
+    for (PartSender<TestOperands>& lane : lanes_)
+        lane.transport(sent.parts, start, delay, [&](TestOperands& item, Parts edge) { item = operands(sent, edge); });
 }
 
 /// Takes the parts that have arrived. Returns true if a triangle has all its parts.
@@ -160,25 +151,20 @@ bool FamilyTessellation::send_family() {
     return to_pass_or_tessellate.send(sent_.family);
 }
 
-/// Returns true if nothing is left to send and nothing is on offer.
-bool FamilyTessellation::send_parts(Branch& branch, std::uint64_t cycle) {
-    if (!branch.output->free())
-        return false;
-    if (branch.left == 0)
-        return true;
-    if (branch.next > cycle) {
-        wake_at(branch.next);
-        return false;
+/// Returns true if all edges have been accepted.
+bool FamilyTessellation::send_parts(std::uint64_t cycle) {
+    bool all = true;
+    for (PartSender<TestOperands>& lane : lanes_) {
+        const bool lane_done = lane.send(
+            cycle, timing_.interval,
+            [this](TestOperands& item, Parts part) {
+                item = operands(sent_, part);
+                ++parts_sent_;
+            },
+            [this](std::uint64_t later) { wake_at(later); });
+        all = all && lane_done;
     }
-    const auto part = static_cast<Parts>(branch.left & -branch.left);
-    branch.left = static_cast<Parts>(branch.left & ~part);
-    branch.offered = operands(sent_, part);
-    branch.next = cycle + timing_.interval;
-    ++parts_sent_;
-    const bool was_taken = branch.output->send(branch.offered);
-    if (branch.left != 0)
-        wake_at(branch.next);
-    return was_taken && branch.left == 0;
+    return all;
 }
 
 void FamilyTessellation::step() {
@@ -190,10 +176,7 @@ void FamilyTessellation::step() {
                 wake_at(start_);
             if (start_ > cycle || !send_family())
                 break;
-            bool all = true;
-            for (Branch& lane : lanes_)
-                all = send_parts(lane, cycle) && all;
-            if (!all)
+            if (!send_parts(cycle))
                 break;
             sending_ = false;
             activity_.item_out(cycle);
@@ -207,9 +190,8 @@ void FamilyTessellation::step() {
         start_ = cycle + timing_.latency;
         activity_.item_in(cycle);
         std::uint64_t most = 1;
-        for (Branch& lane : lanes_) {
-            lane.left = static_cast<Parts>(sent_.parts & lane.takes);
-            lane.next = std::max(lane.next, start_);
+        for (PartSender<TestOperands>& lane : lanes_) {
+            lane.begin(sent_.parts, start_);
             most = std::max<std::uint64_t>(most, static_cast<unsigned>(__builtin_popcount(lane.left)));
         }
         most_parts_ += most;
@@ -248,7 +230,7 @@ void FamilyTessellation::trace_signals(Signals& signals) const {
         signals.value("new_edges", 4, sent_.edges.count);
     }
     Parts left = 0;
-    for (const Branch& lane : lanes_)
+    for (const PartSender<TestOperands>& lane : lanes_)
         left = static_cast<Parts>(left | lane.left);
     signals.value("left", 15, left);
     signals.value("parts_sent", 32, parts_sent_);

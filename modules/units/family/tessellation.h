@@ -10,6 +10,7 @@
 #include "modules/sockets/stream_output.h"
 #include "modules/stage/per_triangle.h"
 #include "modules/units/joining_unit.h"
+#include "modules/units/part_sender.h"
 #include "modules/units/tessellation.h"
 
 namespace tessera {
@@ -65,13 +66,6 @@ class FamilyTessellation : public TessellatingUnit, public JoiningUnit {
         datapath::FamilyEdges edges;
         Parts parts = 0;
     };
-    struct Branch {
-        StreamOutput<TestOperands>* output = nullptr;
-        Parts takes = 0;
-        Parts left = 0;
-        TestOperands offered;
-        std::uint64_t next = 0;
-    };
 
     void b_transport_from_get_triangle(TakenTriangle& taken, sc_core::sc_time& delay);
     void b_transport_from_transform(ScreenPoint& part, sc_core::sc_time& delay);
@@ -82,8 +76,7 @@ class FamilyTessellation : public TessellatingUnit, public JoiningUnit {
     void step() override;
     bool join();
     bool send_family();
-    bool send_parts(Branch& branch, std::uint64_t cycle);
-    Branch& lane_of(Parts part);
+    bool send_parts(std::uint64_t cycle);
 
     sc_core::sc_time latency_;
     PerTriangle<Joined> joined_{1};
@@ -91,7 +84,7 @@ class FamilyTessellation : public TessellatingUnit, public JoiningUnit {
     bool sending_ = false;
     bool family_sent_ = false;  // Pass or Tessellate has accepted the family
     std::uint64_t start_ = 0;   // cycle from which sent_ may be sent
-    std::vector<Branch> lanes_;
+    std::vector<PartSender<TestOperands>> lanes_;
     std::uint64_t parts_sent_ = 0;
     std::size_t most_ahead_of_parts_ = 0;
     std::uint64_t most_parts_ = 0;  // sum over triangles of the parts on the output that sends most
