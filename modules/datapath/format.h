@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <iterator>
 
 namespace tessera::datapath {
 
@@ -105,22 +106,24 @@ struct Saturations {
     std::uint64_t generation = 0;         ///< only with the Generation Test off, since the limit fits the field
     std::uint64_t intensity = 0;          ///< vertices that face the light fully: 256 of 256
 
+    static constexpr std::uint64_t Saturations::*every[] = {
+        &Saturations::displaced_position, &Saturations::normal,        &Saturations::screen_position,
+        &Saturations::view_distance,      &Saturations::screen_normal, &Saturations::degenerate_normal,
+        &Saturations::generation,         &Saturations::intensity};
+
     constexpr Saturations& operator+=(const Saturations& other) {
-        displaced_position += other.displaced_position;
-        normal += other.normal;
-        screen_position += other.screen_position;
-        view_distance += other.view_distance;
-        screen_normal += other.screen_normal;
-        degenerate_normal += other.degenerate_normal;
-        generation += other.generation;
-        intensity += other.intensity;
+        for (const auto count : every)
+            this->*count += other.*count;
         return *this;
     }
     constexpr std::uint64_t total() const {
-        return displaced_position + normal + screen_position + view_distance + screen_normal + degenerate_normal +
-               generation + intensity;
+        std::uint64_t sum = 0;
+        for (const auto count : every)
+            sum += this->*count;
+        return sum;
     }
 };
+static_assert(sizeof(Saturations) == std::size(Saturations::every) * sizeof(std::uint64_t), "list every count");
 
 /// Clamps a value to the format's range; counts it if it did not fit.
 constexpr std::int64_t saturate(std::int64_t value, const Format& format, std::uint64_t& count) {

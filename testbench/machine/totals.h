@@ -1,23 +1,25 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
+#include <functional>
+#include <type_traits>
 
 #include "testbench/machine/simulation.h"
 
 namespace tessera {
 
-/// Adds these fields of `counts` to those of `sum`.
-template <class Counts, class... Fields>
-void add_fields(Counts& sum, const Counts& counts, Fields... fields) {
-    ((sum.*fields += counts.*fields), ...);
-}
-
-/// The same for a struct that consists of these fields only.
-template <class Counts, class... Fields>
-void add_all_fields(Counts& sum, const Counts& counts, Fields... fields) {
-    static_assert(sizeof(Counts) == sizeof...(fields) * sizeof(std::uint64_t), "list every field");
-    add_fields(sum, counts, fields...);
+/// Adds each member of `counts` to that of `sum`. The members are all of type std::uint64_t.
+template <class Counts>
+void add_counts(Counts& sum, const Counts& counts) {
+    std::array<std::uint64_t, sizeof(Counts) / sizeof(std::uint64_t)> sums, more;
+    static_assert(sizeof sums == sizeof sum && std::has_unique_object_representations_v<Counts>);
+    std::memcpy(sums.data(), &sum, sizeof sum);
+    std::memcpy(more.data(), &counts, sizeof counts);
+    std::transform(sums.begin(), sums.end(), more.begin(), sums.begin(), std::plus<>());
+    std::memcpy(static_cast<void*>(&sum), sums.data(), sizeof sum);
 }
 
 /// The counts of a run, totals over all machines.
