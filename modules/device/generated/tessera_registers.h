@@ -140,7 +140,7 @@ enum tessera_error {
     TESSERA_ERROR_BAD_TRIANGLE = 7,  /* stopped: a value of a base triangle does not fit its format; the record's address */
     TESSERA_ERROR_RING_WRITE = 8,  /* stopped: bus error on a write to the ring; the address */
     TESSERA_ERROR_QUEUE_FULL = 9,  /* stopped: the waiting triangles would not fit the Triangle Queue's memory; 0 */
-    TESSERA_ERROR_MACHINE_STOPPED = 10,  /* stopped permanently: the machine's clock has halted, and a reset has no effect; 0 */
+    TESSERA_ERROR_MACHINE_STOPPED = 10,  /* refused or stopped: the machine's clock has halted, and a reset has no effect; 0 */
     TESSERA_ERROR_TABLE_MEMORY = 11,  /* stopped: a memory outside the machine refused a table, or was changed by another; the bus address of the refused data, or 0 */
     TESSERA_ERROR_NO_TABLE = 12,  /* refused: a table that is not to be fetched and never was, whole and in this size; the register's offset */
 };
@@ -156,7 +156,7 @@ enum tessera_error {
     "stopped: a value of a base triangle does not fit its format; the record's address", \
     "stopped: bus error on a write to the ring; the address", \
     "stopped: the waiting triangles would not fit the Triangle Queue's memory; 0", \
-    "stopped permanently: the machine's clock has halted, and a reset has no effect; 0", \
+    "refused or stopped: the machine's clock has halted, and a reset has no effect; 0", \
     "stopped: a memory outside the machine refused a table, or was changed by another; the bus address of the refused data, or 0", \
     "refused: a table that is not to be fetched and never was, whole and in this size; the register's offset"
 

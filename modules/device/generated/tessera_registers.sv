@@ -328,7 +328,7 @@ package tessera_registers;
     ERROR_BAD_TRIANGLE = 4'd7,  // stopped: a value of a base triangle does not fit its format; the record's address
     ERROR_RING_WRITE = 4'd8,  // stopped: bus error on a write to the ring; the address
     ERROR_QUEUE_FULL = 4'd9,  // stopped: the waiting triangles would not fit the Triangle Queue's memory; 0
-    ERROR_MACHINE_STOPPED = 4'd10,  // stopped permanently: the machine's clock has halted, and a reset has no effect; 0
+    ERROR_MACHINE_STOPPED = 4'd10,  // refused or stopped: the machine's clock has halted, and a reset has no effect; 0
     ERROR_TABLE_MEMORY = 4'd11,  // stopped: a memory outside the machine refused a table, or was changed by another; the bus address of the refused data, or 0
     ERROR_NO_TABLE = 4'd12  // refused: a table that is not to be fetched and never was, whole and in this size; the register's offset
   } error_e;
