@@ -2,15 +2,12 @@
 #include "modules/datapath/bilinear.h"
 #include "modules/datapath/bump.h"
 #include "modules/datapath/cull.h"
-#include "modules/datapath/curvature.h"
 #include "modules/datapath/displace.h"
 #include "modules/datapath/edge_tests.h"
+#include "modules/datapath/height_tests.h"
 #include "modules/datapath/light.h"
 #include "modules/datapath/midpoint.h"
-#include "modules/datapath/mipmap.h"
 #include "modules/datapath/normalise.h"
-#include "modules/datapath/rank.h"
-#include "modules/datapath/rank_view.h"
 #include "modules/datapath/reciprocal.h"
 #include "modules/datapath/rectangle.h"
 #include "modules/datapath/transform.h"
@@ -32,10 +29,9 @@ constexpr void visit_intermediates(const Formats& f, Visit&& visit) {
     visit("transform_normal", TransformNormalWidths{f});
     visit("rectangle_size", RectangleWidths{f});
     visit("edge tests", EdgeTestWidths{f});
-    visit("curvature_measure", CurvatureWidths{f});
-    visit("mipmap_test", MipmapWidths{f});
-    visit("rank_test", RankWidths{f});
-    visit("rank_test_in_view", RankViewWidths{f});
+#define TESSERA_OF_HEIGHT_TEST(Test) Test::visit_intermediates(f, visit);
+    TESSERA_FOR_EACH_HEIGHT_TEST(TESSERA_OF_HEIGHT_TEST)
+#undef TESSERA_OF_HEIGHT_TEST
     visit("choose_second_diagonal", DiagonalWidths{f});
     visit("faces_away", CullWidths{f});
     visit("light", LightWidths{f});

@@ -217,6 +217,10 @@ class CurvatureTest : public HeightTestFunctions {
         table.columns = r.covered.columns == 0 ? 0 : static_cast<std::uint32_t>(curvature_entries(covered_texels(r)));
         table.rows = 1;
     }
+    template <class Visit>
+    static constexpr void visit_intermediates(const Formats& f, const Visit& visit) {
+        visit("curvature_measure", CurvatureWidths{f});
+    }
     Multiplications multiplications(const Registers& r) const override {
         return curvature_measure_multiplications(r.formats);
     }

@@ -37,7 +37,7 @@ struct HeightDecision {
 class HeightTestFunctions {
   public:
     static constexpr unsigned most_latency = 1000000;
-    static constexpr int first_free_feature = 13, last_feature = 15;  ///< of the device's register `features`
+    static constexpr int first_free_feature = 13, last_feature = 15;  ///< of `feature`, for an added test
 
     /// One of HeightDecision::values, as in a waveform.
     struct Value {
@@ -58,7 +58,7 @@ class HeightTestFunctions {
     const char* work = "";  ///< what it does with an edge, for the table of units in modules/README.md
     const char* arithmetic = "";
     unsigned latency = 1;      ///< cycles, after the last entry
-    int feature = -1;          ///< its bit of the device's register `features`, of which 13 to 15 are free; -1: none
+    int feature = -1;          ///< its bit of the device's register `features`; -1: none
     bool rectangles = false;   ///< a request reads the corners of a rectangle, at most nine entries, from a
                                ///< memory with the timing of the Summed Height Table; otherwise one entry
     unsigned requests;         ///< exactly, at most 3, of an edge to the test's table, unless it reads codes or nothing
@@ -80,6 +80,9 @@ class HeightTestFunctions {
     virtual void shape(const Registers& registers, TableLayout& table) const = 0;
     /// Whether some edges read the displacement map in place of the table, through port 1.
     virtual bool reads_codes(const Formats&) const { return codes > 0; }
+    /// In a test of the datapath: calls visit(name of a function, struct of its intermediates) for each.
+    template <class Visit>
+    static constexpr void visit_intermediates(const Formats&, const Visit&) {}
     /// Of one edge.
     virtual Multiplications multiplications(const Registers&) const { return {}; }
     /// At most two; the others have no name.

@@ -1,7 +1,7 @@
 #pragma once
 #include <algorithm>
-#include <array>
 #include <cstddef>
+#include <iterator>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -14,16 +14,25 @@
 
 namespace tessera::datapath {
 
+/// The classes of this folder, in the order of HeightTest. Each has its parts in the testbench: host_part(), check_part().
+// clang-format off
+#define TESSERA_FOR_EACH_HEIGHT_TEST(TEST) \
+    TEST(SummedHeightTest) \
+    TEST(RankTest) \
+    TEST(CurvatureTest) \
+    TEST(MipmapTest)
+// clang-format on
+
 template <class Test>
 inline const Test the_test{};
 
-/// Those of this folder.
-inline constexpr std::array<const HeightTestFunctions*, 4> first_height_tests{
-    &the_test<SummedHeightTest>, &the_test<RankTest>, &the_test<CurvatureTest>, &the_test<MipmapTest>};
+#define TESSERA_THE_TEST(Test) &the_test<Test>,
+inline constexpr const HeightTestFunctions* first_height_tests[] = {TESSERA_FOR_EACH_HEIGHT_TEST(TESSERA_THE_TEST)};
+#undef TESSERA_THE_TEST
 
 /// One for each HeightTest, in its order. `added`: for add_height_test().
 inline const std::vector<const HeightTestFunctions*>& height_tests(const HeightTestFunctions* added = nullptr) {
-    static std::vector<const HeightTestFunctions*> all(first_height_tests.begin(), first_height_tests.end());
+    static std::vector<const HeightTestFunctions*> all(std::begin(first_height_tests), std::end(first_height_tests));
     if (added != nullptr)
         all.push_back(added);
     return all;
@@ -90,7 +99,7 @@ inline HeightTest add_height_test(const HeightTestFunctions& test) {
 
 /// Whether it is one of those added: what goes wrong may be its fault.
 inline bool is_added(HeightTest test) {
-    return static_cast<std::size_t>(test) >= first_height_tests.size();
+    return static_cast<std::size_t>(test) >= std::size(first_height_tests);
 }
 
 /// Of a test of this folder.

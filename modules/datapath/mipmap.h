@@ -126,6 +126,10 @@ class MipmapTest : public HeightTestFunctions {
         table.columns = static_cast<std::uint32_t>(mipmap_entries(r.map));
         table.rows = 1;
     }
+    template <class Visit>
+    static constexpr void visit_intermediates(const Formats& f, const Visit& visit) {
+        visit("mipmap_test", MipmapWidths{f});
+    }
     std::array<Threshold, 2> thresholds(const Formats& f) const override {
         return {{{"mipmap_threshold", mipmap_threshold_bits(f), false, "codes, 1 fraction bit"}}};
     }

@@ -35,6 +35,11 @@ class RankTest : public HeightTestFunctions {
         table.columns = r.covered.columns;
         table.rows = r.covered.rows;
     }
+    template <class Visit>
+    static constexpr void visit_intermediates(const Formats& f, const Visit& visit) {
+        visit("rank_test", RankWidths{f});
+        visit("rank_test_in_view", RankViewWidths{f});
+    }
     std::array<Threshold, 2> thresholds(const Formats& f) const override {
         const auto of = [&](const char* threshold, int entry_bits, int limit_bits) {
             return f.distances && entry_bits > 0

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "modules/datapath/height_tests.h"
 #include "testbench/common/error.h"
@@ -132,7 +133,7 @@ std::string range_text(const Key& key) {
 }
 
 std::string own_height_test_hint() {
-    return datapath::height_tests().size() > datapath::first_height_tests.size()
+    return datapath::height_tests().size() > std::size(datapath::first_height_tests)
                ? ""
                : "; a height test of one's own is known if the environment variable TESSERA_HEIGHT_TESTS names its library";
 }

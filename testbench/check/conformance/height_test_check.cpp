@@ -9,8 +9,9 @@ namespace {
 
 /// In the order of datapath::height_tests().
 std::vector<const HeightTestCheck*>& list() {
-    static std::vector<const HeightTestCheck*> all{&summed_height_check(), &rank_check(), &curvature_check(),
-                                                   &mipmap_check()};
+#define TESSERA_ITS_PART(Test) &check_part<datapath::Test>(),
+    static std::vector<const HeightTestCheck*> all{TESSERA_FOR_EACH_HEIGHT_TEST(TESSERA_ITS_PART)};
+#undef TESSERA_ITS_PART
     return all;
 }
 

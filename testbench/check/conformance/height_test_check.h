@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "golden/height_tests/height_test.h"
+#include "modules/datapath/height_tests.h"
 #include "testbench/check/conformance/golden_job.h"
 #include "testbench/check/conformance/setup_judge.h"
 #include "testbench/machine/machine_setup.h"
@@ -35,11 +36,14 @@ class HeightTestCheck {
     virtual TableCheck table_check(const MachineSetup& setup, const GoldenJob& golden, SetupResult& result) const = 0;
 };
 
-/// One each, in files of their names.
-const HeightTestCheck& summed_height_check();
-const HeightTestCheck& rank_check();
-const HeightTestCheck& curvature_check();
-const HeightTestCheck& mipmap_check();
+/// That of a test of the datapath.
+template <class Test>
+const HeightTestCheck& check_part();
+#define TESSERA_CHECK_PART(Test) \
+    template <>                  \
+    const HeightTestCheck& check_part<datapath::Test>();
+TESSERA_FOR_EACH_HEIGHT_TEST(TESSERA_CHECK_PART)
+#undef TESSERA_CHECK_PART
 
 /// Adds that of the test added last to datapath::height_tests().
 void add_height_test_check(const HeightTestCheck& check);

@@ -50,7 +50,8 @@ class CurvatureHost : public HeightTestHost {
 
 }  // namespace
 
-const HeightTestHost& curvature_host() {
+template <>
+const HeightTestHost& host_part<datapath::CurvatureTest>() {
     static const CurvatureHost host;
     return host;
 }

@@ -16,8 +16,9 @@ namespace tessera {
 namespace {
 
 std::vector<const HeightTestHost*>& list() {
-    static std::vector<const HeightTestHost*> all{&summed_height_host(), &rank_host(), &curvature_host(),
-                                                  &mipmap_host()};
+#define TESSERA_ITS_PART(Test) &host_part<datapath::Test>(),
+    static std::vector<const HeightTestHost*> all{TESSERA_FOR_EACH_HEIGHT_TEST(TESSERA_ITS_PART)};
+#undef TESSERA_ITS_PART
     return all;
 }
 

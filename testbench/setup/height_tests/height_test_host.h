@@ -3,6 +3,7 @@
 #include <string_view>
 #include <vector>
 
+#include "modules/datapath/height_tests.h"
 #include "modules/datapath/parameters.h"
 #include "testbench/setup/key_range.h"
 #include "testbench/setup/prepared_scene.h"
@@ -50,11 +51,14 @@ class HeightTestHost {
     virtual Range range(const PreparedScene&, datapath::SummedHeightUnit) const { return {}; }
 };
 
-/// One each, in files of their names.
-const HeightTestHost& summed_height_host();
-const HeightTestHost& rank_host();
-const HeightTestHost& curvature_host();
-const HeightTestHost& mipmap_host();
+/// That of a test of the datapath.
+template <class Test>
+const HeightTestHost& host_part();
+#define TESSERA_HOST_PART(Test) \
+    template <>                 \
+    const HeightTestHost& host_part<datapath::Test>();
+TESSERA_FOR_EACH_HEIGHT_TEST(TESSERA_HOST_PART)
+#undef TESSERA_HOST_PART
 
 /// In the order of datapath::height_tests().
 const std::vector<const HeightTestHost*>& height_test_hosts();

@@ -49,7 +49,8 @@ class MipmapHost : public HeightTestHost {
 
 }  // namespace
 
-const HeightTestHost& mipmap_host() {
+template <>
+const HeightTestHost& host_part<datapath::MipmapTest>() {
     static const MipmapHost host;
     return host;
 }

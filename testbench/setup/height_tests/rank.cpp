@@ -113,7 +113,8 @@ class RankHost : public HeightTestHost {
 
 }  // namespace
 
-const HeightTestHost& rank_host() {
+template <>
+const HeightTestHost& host_part<datapath::RankTest>() {
     static const RankHost host;
     return host;
 }

@@ -57,7 +57,8 @@ class SummedHeightHost : public HeightTestHost {
 
 }  // namespace
 
-const HeightTestHost& summed_height_host() {
+template <>
+const HeightTestHost& host_part<datapath::SummedHeightTest>() {
     static const SummedHeightHost host;
     return host;
 }

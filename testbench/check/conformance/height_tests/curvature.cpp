@@ -98,7 +98,8 @@ class CurvatureCheck : public HeightTestCheck {
 
 }  // namespace
 
-const HeightTestCheck& curvature_check() {
+template <>
+const HeightTestCheck& check_part<datapath::CurvatureTest>() {
     static const CurvatureCheck check;
     return check;
 }

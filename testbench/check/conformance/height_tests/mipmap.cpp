@@ -59,7 +59,8 @@ class MipmapCheck : public HeightTestCheck {
 
 }  // namespace
 
-const HeightTestCheck& mipmap_check() {
+template <>
+const HeightTestCheck& check_part<datapath::MipmapTest>() {
     static const MipmapCheck check;
     return check;
 }

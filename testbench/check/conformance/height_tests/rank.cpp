@@ -203,7 +203,8 @@ class RankCheck : public HeightTestCheck {
 
 }  // namespace
 
-const HeightTestCheck& rank_check() {
+template <>
+const HeightTestCheck& check_part<datapath::RankTest>() {
     static const RankCheck check;
     return check;
 }

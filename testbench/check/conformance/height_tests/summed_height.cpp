@@ -55,7 +55,8 @@ class SummedHeightCheck : public HeightTestCheck {
 
 }  // namespace
 
-const HeightTestCheck& summed_height_check() {
+template <>
+const HeightTestCheck& check_part<datapath::SummedHeightTest>() {
     static const SummedHeightCheck check;
     return check;
 }
