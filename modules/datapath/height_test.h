@@ -9,7 +9,6 @@
 #include "modules/datapath/parameters.h"
 #include "modules/datapath/rank_view.h"
 #include "modules/datapath/reads.h"
-#include "modules/datapath/rectangle.h"
 #include "modules/datapath/vertex.h"
 
 namespace tessera::datapath {
@@ -98,63 +97,17 @@ class HeightTestFunctions {
         return count;
     }
 
-    /// Adds the entries that an edge needs.
+    /// Adds the entries that an edge needs, as declared above (units/edge_tests/declared_reads.h).
     virtual void reads(const HeightEdge& edge, const Registers& registers, Reads& reads) const = 0;
     /// entries: those, in their order; the others are not set. Sets members of `decision`, which is as constructed.
     virtual void decide(const HeightEdge& edge, const Entries& entries, const Registers& registers,
                         HeightDecision& decision) const = 0;
-
-    /// Whether reads() added what is declared above. Called for each edge.
-    bool as_declared(const Reads& added, const Registers& registers) const {
-        const unsigned port = added.last_port(), count = added.requests();
-        if (count == 0)
-            return added.entries() == 0 && port == 0 && (requests == 0 || may_read_nothing);
-        if (count > Reads::most_requests || added.first(0) != 0 ||
-            (port == 0 ? count != requests : port != 1 || count != 1 || !reads_codes(registers.formats)))
-            return false;
-        const EntryCount range = entries_of_a_request(port);
-        bool so = true;
-        for (unsigned k = 0; k < count; ++k)
-            so = so && added.port(k) == port && added.count(k) >= range.least && added.count(k) <= range.most;
-        return so;
-    }
-    /// In which way they are not.
-    std::string fault_of(const Reads& added, const Registers& registers) const {
-        const std::string its = "height test " + std::string(name) + ": reads() ";
-        const unsigned port = added.last_port(), count = added.requests(), wanted = port == 0 ? requests : 1;
-        if (port > 1 || (port == 1 && !reads_codes(registers.formats)))
-            return its + "goes through port " + std::to_string(port) + ", but the last port is " +
-                   (reads_codes(registers.formats) ? "1" : "0: in this design no edge reads codes");
-        if (count != wanted || count > Reads::most_requests)
-            return its + "adds " + std::to_string(count) + " requests, but " +
-                   (count > Reads::most_requests ? "at most " + std::to_string(Reads::most_requests) + " are kept"
-                    : port == 1                  ? "codes are read in 1"
-                                                 : "requests = " + std::to_string(requests) + " is declared") +
-                   (count == 0 ? ", and may_read_nothing = false" : "");
-        if (count == 0 || added.first(0) != 0)
-            return its + "adds an entry before the first request";
-        const EntryCount range = entries_of_a_request(port);
-        for (unsigned k = 0; k < count; ++k)
-            if (added.count(k) < range.least || added.count(k) > range.most)
-                return its + "adds " + std::to_string(added.count(k)) + " entries to a request, but with " +
-                       (port == 1    ? "codes = " + std::to_string(codes)
-                        : rectangles ? "rectangles = true"
-                                     : "rectangles = false") +
-                       " the range is " + std::to_string(range.least) + " to " + std::to_string(range.most);
-        return its + "adds requests through both ports";
-    }
 
   protected:
     constexpr HeightTestFunctions(const char* its_name, unsigned most_requests)
         : name(its_name), requests(most_requests) {}
 
   private:
-    struct EntryCount {
-        unsigned least, most;
-    };
-    EntryCount entries_of_a_request(unsigned port) const {
-        return port == 1 ? EntryCount{codes, codes} : EntryCount{1, rectangles ? most_rectangle_entries : 1};
-    }
     /// "Mipmap Test" for "mipmap_test".
     static std::string capitalised(std::string words) {
         bool first = true;

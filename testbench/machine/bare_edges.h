@@ -16,6 +16,7 @@
 #include "modules/datapath/rank.h"
 #include "modules/datapath/transform.h"
 #include "modules/datapath/triangle_pass.h"
+#include "modules/units/edge_tests/declared_reads.h"
 
 namespace tessera {
 
@@ -143,8 +144,8 @@ class BareEdges {
         const datapath::Registers& registers = r();
         datapath::Reads reads;
         height_test_.reads(edge, registers, reads);
-        if (!height_test_.as_declared(reads, registers))
-            throw std::logic_error(height_test_.fault_of(reads, registers));
+        if (!as_declared(height_test_, reads, registers))
+            throw std::logic_error(fault_of(height_test_, reads, registers));
         datapath::Entries entries;  // NOLINT(cppcoreguidelines-pro-type-member-init): as many as are read
         const bool codes = reads.last_port() == 1;
         const datapath::TableLayout& table = codes ? registers.displacement_map : registers.height_table;

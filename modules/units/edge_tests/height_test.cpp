@@ -5,6 +5,7 @@
 #include <string>
 
 #include "modules/stage/stage_steps.h"
+#include "modules/units/edge_tests/declared_reads.h"
 
 namespace tessera {
 
@@ -34,9 +35,9 @@ HeightTestUnit::HeightTestUnit(const sc_core::sc_module_name& name, const UnitCo
 void HeightTestUnit::reads(const HeightOperands& edge, Reads& reads) const {
     if (registers_.tests.summed_height_test) {
         functions_.reads(edge, registers_, reads);
-        if (!functions_.as_declared(reads, registers_))
+        if (!as_declared(functions_, reads, registers_))
             SC_REPORT_ERROR("tessera/height_test",
-                            (std::string(name()) + ": " + functions_.fault_of(reads, registers_)).c_str());
+                            (std::string(name()) + ": " + fault_of(functions_, reads, registers_)).c_str());
     }
 }
 

@@ -10,6 +10,7 @@
 #include "modules/datapath/height_tests.h"
 #include "modules/datapath/midpoint.h"
 #include "modules/datapath/table_shapes.h"
+#include "modules/units/edge_tests/declared_reads.h"
 #include "testbench/common/random.h"
 #include "testbench/prove/random_edges/edge_machine.h"
 
@@ -199,9 +200,9 @@ TEST_CASE("height tests: reads that are not as declared are named with their lim
         reads.through(row.port);
         add(reads, row.added, row.of_entries);
         INFO(row.says);
-        CHECK(test.as_declared(reads, {}) == row.says.empty());
+        CHECK(as_declared(test, reads, {}) == row.says.empty());
         if (!row.says.empty())
-            CHECK(test.fault_of(reads, {}) == "height test any: reads() " + row.says);
+            CHECK(fault_of(test, reads, {}) == "height test any: reads() " + row.says);
     }
     AnyReads test(nullptr, 2);
     test.codes = 1;
@@ -210,15 +211,15 @@ TEST_CASE("height tests: reads that are not as declared are named with their lim
     mixed.through(1);
     mixed.add(0);
     test.requests = 2;
-    CHECK_FALSE(test.as_declared(mixed, {}));
+    CHECK_FALSE(as_declared(test, mixed, {}));
     mixed.through(0);
-    CHECK_FALSE(test.as_declared(mixed, {}));
-    CHECK(test.fault_of(mixed, {}) == "height test any: reads() adds requests through both ports");
+    CHECK_FALSE(as_declared(test, mixed, {}));
+    CHECK(fault_of(test, mixed, {}) == "height test any: reads() adds requests through both ports");
     early.add_entry(0);
     early.add(0);
     early.add(0);
-    CHECK_FALSE(test.as_declared(early, {}));
-    CHECK(test.fault_of(early, {}) == "height test any: reads() adds an entry before the first request");
+    CHECK_FALSE(as_declared(test, early, {}));
+    CHECK(fault_of(test, early, {}) == "height test any: reads() adds an entry before the first request");
 }
 
 TEST_CASE("height tests: the bare machine refuses reads that are not as declared, or outside the table") {
