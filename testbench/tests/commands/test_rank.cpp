@@ -29,11 +29,16 @@ const Arguments from_the_rim{"--set", "camera.eye=[4.262, 4.101, 0.93]",
 
 }  // namespace
 
-TEST_CASE("rank: Crater Lake's error at 4,800 triangles, with entries of 8 bits") {
+// At other numbers of triangles: setup/tables.
+TEST_CASE("rank: Crater Lake's error at 4,800 triangles, with entries of 8 bits, and by a Curvature Test") {
     const TestFolder here;
     const CraterLakeRun found = ranked(here, {"--set", "tests.rank_threshold=0.038"});
     CHECK(found.triangles < 4800);
     CHECK(found.rms < 5.5);
+    const CraterLakeRun bent(here,
+                             {"--set", "hardware.height_test=curvature", "--set", "tests.curvature_threshold=0.14"});
+    CHECK(bent.triangles <= 4800);
+    CHECK(bent.rms <= 6.5);
 }
 
 TEST_CASE("tessera rank: a row has the figures of a run with its threshold, and every bound holds") {
