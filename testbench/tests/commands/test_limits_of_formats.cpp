@@ -58,15 +58,6 @@ TEST_CASE("limits: every timing key at its highest value ends in a message or a 
     }
 }
 
-TEST_CASE("limits: a base mesh without a triangle is refused with its file's name") {
-    const TestFolder here;
-    write_all(here.path() / "points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n");
-    write_all(here.path() / "flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
-    write_all(here.path() / "empty.obj", "");
-    for (const char* const file : {"points.obj", "flat.obj", "empty.obj"})
-        refused(run_of({"mesh.source=file", std::string("mesh.file=") + file}), here, {file});
-}
-
 TEST_CASE("limits: a negative number of fraction bits of the view distance is reported as it is") {
     const TestFolder here;
     succeed(run_of({"formats.position_bits=12", "formats.position_fraction=0", "camera.eye=[0, -30, 30]"}),
@@ -93,11 +84,4 @@ TEST_CASE("limits: a saturation that no width prevents is a note, not a warning"
         run_of({"map.source=constant", "camera.eye=[0, -3, 0]", "camera.target=[0, 0, 0]", "hardware.light=[0, 0, 1]"}),
         here.path());
     CHECK_THAT(end.out, Contains("note: intensity: ") && Contains("no key widens") && !Contains("warning: "));
-}
-
-TEST_CASE("limits: a threshold below its register's step is refused before the work") {
-    const TestFolder here;
-    refused(run_of({"tests.highlight=true", "tests.highlight_normal_threshold=1e-5"}), here.path(),
-            {"tests.highlight_normal_threshold = 1e-05", "6.103515625e-05", "set it at least to that step"});
-    CHECK(here.names().empty());
 }
