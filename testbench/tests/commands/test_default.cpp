@@ -60,20 +60,6 @@ TEST_CASE("the summary reports which test decided, with the statistics' figures"
     CHECK(run.count("pass_or_tessellate", "stopped_by_several") == 0);
 }
 
-TEST_CASE("a map not divisible by the mesh's quads gives a warning, and its remedy helps") {
-    const TestFolder here;
-    const auto run = [&](const char* side) {
-        return succeed(Arguments{"run"} +
-                           set({"mode=functional", std::string("map.width=") + side, std::string("map.height=") + side,
-                                "check.golden=false", "check.end_to_end=false", "output.picture=false"}),
-                       here.path())
-            .out;
-    };
-    CHECK_THAT(run("64"), Contains("warning: ") && Contains("one LSB below a texel's border") &&
-                              Contains("map.width = 72 (a multiple of 3 quads), or mesh.columns = 4"));
-    CHECK_THAT(run("72"), !Contains("warning: "));
-}
-
 TEST_CASE("two runs write identical bytes, and so do the jobs they write") {
     const TestFolder here;
     // The folder's name is part of the job: the runs keep it and start in different working folders.

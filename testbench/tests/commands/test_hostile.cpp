@@ -102,30 +102,6 @@ TEST_CASE("valid maps of every kind run") {
     }
 }
 
-TEST_CASE("missing data of a map are named, and setting the key as the note says restores the relief") {
-    const TestFolder here;
-    const std::string hole = GENERATE("65535", "32768", "0");
-    const int lowest = hole == "0" ? 33000 : 35;
-    std::string text = "P2 24 24 65535\n";
-    for (int k = 0; k < 576; ++k)
-        text += (k % 24 < 4 && k < 96 ? hole : std::to_string(lowest + 2 * k)) + "\n";
-    write_all(here.path() / "dem.pgm", text);
-    const auto run = [&](const Arguments& more) {
-        const Arguments settings{"map.file=dem.pgm",        "mesh.columns=4",       "mesh.rows=4",
-                                 "map.range=data",          "mode=functional",      "tests.generation_limit=4",
-                                 "displacement.scale=0.25", "output.picture=false", "output.folder=out"};
-        return succeed(Arguments{"run"} + set(settings + more), here.path()).out;
-    };
-    const std::string note = run({}), key = "set map.no_data = ";
-    REQUIRE_THAT(note, Contains("note: map: 16 texels hold exactly the " +
-                                std::string(hole == "0" ? "lowest" : "highest") + " value, " + hole + ","));
-    const std::string advice = note.substr(note.find(key) + 4), setting = advice.substr(0, advice.find(".\n"));
-    const std::string mended = run({setting});
-    CHECK_THAT(mended, Contains("note: map: 16 no-data (" + hole + ") texels set to the lowest remaining value, "));
-    CHECK_THAT(mended, !Contains(key));
-    CHECK_THAT(read_all(here.path() / "out" / "job.toml"), Contains("no_data = [" + hole + ".0]"));
-}
-
 TEST_CASE("repairs to mesh and map are reported and recorded") {
     const TestFolder here;
     write_all(here.path() / "flat.obj",
