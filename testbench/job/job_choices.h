@@ -7,115 +7,34 @@
 
 namespace tessera {
 
-// The names in a job file of the enumerators of job.h, besides those of modules/timing/design_choices.h. One switch per
-// enumeration, so that the compiler reports an enumerator without a name.
-
-constexpr std::string_view name_of(MeshSource value) {
-    switch (value) {
-        case MeshSource::plane: return "plane";
-        case MeshSource::cylinder: return "cylinder";
-        case MeshSource::sphere: return "sphere";
-        case MeshSource::file: return "file";
-        case MeshSource::run: return "run";
-        case MeshSource::lattice: return "lattice";
-    }
-    return {};
-}
-
-constexpr std::string_view name_of(MapSource value) {
-    switch (value) {
-        case MapSource::half_donut: return "half_donut";
-        case MapSource::text: return "text";
-        case MapSource::noise: return "noise";
-        case MapSource::constant: return "constant";
-        case MapSource::ramp: return "ramp";
-        case MapSource::file: return "file";
-    }
-    return {};
-}
-
-constexpr std::string_view name_of(MapHeights value) {
-    switch (value) {
-        case MapHeights::given: return "given";
-        case MapHeights::fitted: return "fitted";
-    }
-    return {};
-}
-
-constexpr std::string_view name_of(Addressing value) {
-    switch (value) {
-        case Addressing::clamp: return "clamp";
-        case Addressing::repeat: return "repeat";
-    }
-    return {};
-}
-
-constexpr std::string_view name_of(Triangulation value) {
-    switch (value) {
-        case Triangulation::shorter: return "shorter";
-        case Triangulation::first: return "first";
-        case Triangulation::second: return "second";
-        case Triangulation::greatest_rank: return "greatest_rank";
-    }
-    return {};
-}
-
-constexpr std::string_view name_of(MapFilter value) {
-    switch (value) {
-        case MapFilter::nearest: return "nearest";
-        case MapFilter::bilinear: return "bilinear";
-    }
-    return {};
-}
-
-constexpr std::string_view name_of(DesignPreset value) {
-    switch (value) {
-        case DesignPreset::paper: return "paper";
-        case DesignPreset::modern: return "modern";
-    }
-    return {};
-}
-
-constexpr std::string_view name_of(Culling value) {
-    switch (value) {
-        case Culling::none: return "none";
-        case Culling::back: return "back";
-    }
-    return {};
-}
-
-constexpr std::string_view name_of(RankView value) {
-    switch (value) {
-        case RankView::none: return "none";
-        case RankView::per_point: return "per_point";
-        case RankView::per_pixel: return "per_pixel";
-    }
-    return {};
-}
-
-constexpr std::string_view name_of(MipmapFilter value) {
-    switch (value) {
-        case MipmapFilter::mean: return "mean";
-        case MipmapFilter::maximum: return "maximum";
-    }
-    return {};
-}
-
-constexpr std::string_view name_of(SummedHeightUnit value) {
-    switch (value) {
-        case SummedHeightUnit::sum: return "sum";
-        case SummedHeightUnit::area: return "area";
-    }
-    return {};
-}
-
-constexpr std::string_view name_of(Mode value) {
-    switch (value) {
-        case Mode::functional: return "functional";
-        case Mode::timed: return "timed";
-    }
-    return {};
-}
+// The enumerations of job.h, besides those of modules/timing/design_choices.h.
+template <>
+inline constexpr auto choice_names<MeshSource> = names_in_order<MeshSource>("plane", "cylinder", "sphere", "file",
+                                                                            "run", "lattice");
+template <>
+inline constexpr auto choice_names<MapSource> = names_in_order<MapSource>("half_donut", "text", "noise", "constant",
+                                                                          "ramp", "file");
+template <>
+inline constexpr auto choice_names<MapHeights> = names_in_order<MapHeights>("given", "fitted");
+template <>
+inline constexpr auto choice_names<Addressing> = names_in_order<Addressing>("clamp", "repeat");
+template <>
+inline constexpr auto choice_names<Triangulation> = names_in_order<Triangulation>("shorter", "first", "second",
+                                                                                  "greatest_rank");
+template <>
+inline constexpr auto choice_names<MapFilter> = names_in_order<MapFilter>("nearest", "bilinear");
+template <>
+inline constexpr auto choice_names<DesignPreset> = names_in_order<DesignPreset>("paper", "modern");
+template <>
+inline constexpr auto choice_names<Culling> = names_in_order<Culling>("none", "back");
+template <>
+inline constexpr auto choice_names<RankView> = names_in_order<RankView>("none", "per_point", "per_pixel");
+template <>
+inline constexpr auto choice_names<MipmapFilter> = names_in_order<MipmapFilter>("mean", "maximum");
+template <>
+inline constexpr auto choice_names<SummedHeightUnit> = names_in_order<SummedHeightUnit>("sum", "area");
+template <>
+inline constexpr auto choice_names<Mode> = names_in_order<Mode>("functional", "timed");
 
 /// All names of an enumeration, in the enumerators' order; enumerators count from 0 without gaps.
 template <typename Enum>
