@@ -211,14 +211,20 @@ class Fields {
     int index_ = -1;
 };
 
-/// All fields of a vertex, as in the Triangle Queue.
+/// The fields of a vertex that the host sends.
 template <class Codec, class AnyVertex>
-constexpr void describe_vertex(Fields<Codec>& fields, AnyVertex& vertex) {
+constexpr void describe_base_vertex(Fields<Codec>& fields, AnyVertex& vertex) {
     fields.position("p", vertex.position, "P");
     fields.direction("n", vertex.normal, "N");
     fields.direction("tangent", vertex.tangent, "T");
     fields.handedness("handedness", vertex.handedness, "bitangent = handedness (N x T)");
     fields.texture("t", vertex.texture, "t");
+}
+
+/// All fields of a vertex, as in the Triangle Queue.
+template <class Codec, class AnyVertex>
+constexpr void describe_vertex(Fields<Codec>& fields, AnyVertex& vertex) {
+    describe_base_vertex(fields, vertex);
     fields.generation("generation", vertex.generation, "generation");
     fields.flag("displaced_known", vertex.displaced_known, "P', P's, N' are known");
     fields.flag("screen_normal_known", vertex.screen_normal_known, "N's is known");

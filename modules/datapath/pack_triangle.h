@@ -4,7 +4,6 @@
 
 #include "modules/datapath/fields.h"
 #include "modules/datapath/vertex.h"
-#include "modules/datapath/widths.h"
 
 namespace tessera::datapath {
 
@@ -12,12 +11,20 @@ namespace tessera::datapath {
 /// packing and unpacking.
 ///
 /// Layout: the fields of describe_triangle(), the lowest bit first, little endian, without gaps, each as wide as its
-/// format, in all stream_widths().triangle bits. Signed fields are two's complement. Unused bits of the last byte are
-/// zero.
+/// format, in all packed_triangle_bits(). Signed fields are two's complement. Unused bits of the last byte are zero.
+
+/// Bits of an entry.
+constexpr std::uint32_t packed_triangle_bits(const Formats& formats) {
+    WidthCounter counter;
+    Fields<WidthCounter> fields(counter, formats);
+    const Triangle triangle;
+    describe_triangle(fields, triangle);
+    return counter.bits;
+}
 
 /// Bytes of an entry in off-chip memory.
 constexpr std::size_t packed_triangle_bytes(const Formats& formats) {
-    return (std::size_t{stream_widths(formats).triangle} + 7) / 8;
+    return (std::size_t{packed_triangle_bits(formats)} + 7) / 8;
 }
 
 /// Triangle::base and parent follow the entry in bytes of their own. They are tags of the model only and not counted as
@@ -109,8 +116,9 @@ class FieldReader {
     Fields<FieldWriter> fields(writer, formats);
     describe_triangle(fields, triangle);
     writer.finish();
-    store_word(triangle.base, bytes + packed_triangle_bytes(formats));
-    store_word(triangle.parent, bytes + packed_triangle_bytes(formats) + 4);
+    unsigned char* const tag = bytes + packed_triangle_bytes(formats);
+    store_word(triangle.base, tag);
+    store_word(triangle.parent, tag + 4);
     return writer.fits();
 }
 
@@ -120,8 +128,9 @@ constexpr Triangle unpack_triangle(const unsigned char* bytes, const Formats& fo
     FieldReader reader(bytes);
     Fields<FieldReader> fields(reader, formats);
     describe_triangle(fields, triangle);
-    triangle.base = load_word(bytes + packed_triangle_bytes(formats));
-    triangle.parent = load_word(bytes + packed_triangle_bytes(formats) + 4);
+    const unsigned char* const tag = bytes + packed_triangle_bytes(formats);
+    triangle.base = load_word(tag);
+    triangle.parent = load_word(tag + 4);
     return triangle;
 }
 

@@ -9,7 +9,7 @@
 #include <sstream>
 #include <string_view>
 
-#include "modules/datapath/widths.h"
+#include "modules/datapath/pack_triangle.h"
 #include "testbench/common/grouped_digits.h"
 #include "testbench/machine/deciding_test.h"
 #include "testbench/machine/totals.h"
@@ -215,7 +215,6 @@ std::string summary(const MachineSetup& setup, const Simulation& simulation, con
     const DecidingUnit::Counts& counts = totals.counts;
     const Decisions::Counts& decided = totals.decided;
     const std::uint64_t edges = counts.edges_tested;
-    const datapath::Widths widths = datapath::stream_widths(setup.registers.formats);
     const std::uint64_t table_reads = totals.height_table_reads;
     const bool sums = setup.registers.formats.height_test == datapath::HeightTest::summed_height;
 
@@ -239,8 +238,9 @@ std::string summary(const MachineSetup& setup, const Simulation& simulation, con
                             count(decided.stopped_by_tex_coord_alone), count(decided.stopped_by_generation_alone),
                             count(decided.stopped_by_several)));
     text += work_rows(simulation, mesh);
-    text += row("triangle queue", fmt::format("at most {} triangles waiting, {} bits each{}", count(totals.most_queued),
-                                              widths.triangle, one_after_another(setup)));
+    text += row("triangle queue",
+                fmt::format("at most {} triangles waiting, {} bits each{}", count(totals.most_queued),
+                            datapath::packed_triangle_bits(setup.registers.formats), one_after_another(setup)));
     text += row(
         (height_test_text(setup) + " table").c_str(),
         fmt::format("{} bytes, {} bit entries{}; {} reads, {:.1f} per edge",

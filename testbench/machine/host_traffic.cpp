@@ -1,13 +1,17 @@
 #include "testbench/machine/host_traffic.h"
 
+#include "modules/datapath/fields.h"
 #include "modules/datapath/registers.h"
-#include "modules/datapath/widths.h"
+#include "modules/datapath/vertex.h"
 
 namespace tessera {
 
 std::uint64_t base_mesh_bytes(const MachineSetup& setup) {
-    const datapath::Widths widths = datapath::stream_widths(setup.registers.formats);
-    return (setup.base_triangles.size() * 3 * widths.base_vertex + 7) / 8;
+    datapath::WidthCounter width;
+    datapath::Fields<datapath::WidthCounter> fields(width, setup.registers.formats);
+    const datapath::Vertex vertex;
+    describe_base_vertex(fields, vertex);
+    return (setup.base_triangles.size() * 3 * width.bits + 7) / 8;
 }
 
 std::vector<std::uint32_t> register_words(const datapath::Registers& registers) {

@@ -7,8 +7,9 @@
 #include <nlohmann/json.hpp>
 #include <type_traits>
 
+#include "modules/datapath/pack_triangle.h"
 #include "modules/datapath/reciprocal.h"
-#include "modules/datapath/widths.h"
+#include "modules/sockets/items.h"
 #include "testbench/machine/host_traffic.h"
 #include "testbench/machine/totals.h"
 #include "testbench/output/report/area.h"
@@ -22,7 +23,6 @@ namespace {
 
 void format_figures(std::vector<Figure>& all, const MachineSetup& setup) {
     const datapath::Formats& formats = setup.registers.formats;
-    const datapath::Widths widths = datapath::stream_widths(formats);
     FigureGroup c(all, "formats");
     c.add("position_bits", formats.position.bits, "bit", "P, P', one component");
     c.add("position_fraction", formats.position.fraction, "bit", "of these, fraction bits");
@@ -44,8 +44,8 @@ void format_figures(std::vector<Figure>& all, const MachineSetup& setup) {
     }
     c.add("view_distance_fraction", formats.view_distance.fraction, "bit", "of w, as wide as a position");
     c.add("screen_bits", formats.screen.bits, "bit", "P's, x or y");
-    c.add("queue_entry", widths.triangle, "bit", "one triangle in the Triangle Queue");
-    c.add("lighting_vertex", widths.emitted_vertex, "bit", "one vertex to Lighting");
+    c.add("queue_entry", datapath::packed_triangle_bits(formats), "bit", "one triangle in the Triangle Queue");
+    c.add("lighting_vertex", item_bits<TriangleToLight>(formats, 0) / 3, "bit", "one vertex to Lighting");
 }
 
 /// Width of each stream: one item with its tag, without annotations.
@@ -111,13 +111,16 @@ void texel_figures(std::vector<Figure>& all, const TexelSpread& spread) {
 }
 
 void host_figures(std::vector<Figure>& all, const MachineSetup& setup, std::uint64_t finished, std::uint64_t vertices) {
-    const datapath::Widths widths = datapath::stream_widths(setup.registers.formats);
+    const datapath::Formats& formats = setup.registers.formats;
     const auto bytes = [](std::uint64_t bits) { return (bits + 7) / 8; };
     const HostTraffic traffic = host_traffic(setup);
     const std::uint64_t base = traffic.base_mesh;
     const std::uint64_t tables = traffic.displacement_map + traffic.normal_map + traffic.summed_height_table;
-    const std::uint64_t whole = bytes(finished * 3 * widths.finished_vertex);
-    const std::uint64_t indexed = bytes(vertices * widths.finished_vertex) + finished * 3 * 4;
+    // P', N', t
+    const auto vertex =
+        static_cast<unsigned>(3 * formats.position.bits + 3 * formats.normal.bits + 2 * formats.texture.bits);
+    const std::uint64_t whole = bytes(finished * 3 * vertex);
+    const std::uint64_t indexed = bytes(vertices * vertex) + finished * 3 * 4;
     FigureGroup c(all, "host");
     c.add("base_triangles", setup.base_triangles.size(), "triangle", "sent to Get Triangle");
     c.add("base_triangles_dropped", setup.base_dropped, "triangle", "collapsed when rounded to the formats");
@@ -288,7 +291,7 @@ std::vector<Figure> collect_statistics(const MachineSetup& setup, const Simulati
     queue.add("high_water_mark", totals.most_queued, "triangle",
               std::string("most triangles waiting at a time, in one machine") + one_after_another(setup));
     queue.add("high_water_bytes",
-              (totals.most_queued * datapath::stream_widths(setup.registers.formats).triangle + 7) / 8, "byte",
+              (totals.most_queued * datapath::packed_triangle_bits(setup.registers.formats) + 7) / 8, "byte",
               std::string("memory that this takes") + one_after_another(setup));
 
     FigureGroup lighting(all, "lighting");

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "modules/datapath/widths.h"
+#include "modules/datapath/pack_triangle.h"
 #include "testbench/output/report/figures_text.h"
 #include "testbench/tests/support/hand_made_run.h"
 
@@ -123,11 +123,13 @@ TEST_CASE("statistics: two triangles split once have the figures worked out by h
                                           {"reads_per_edge", 12}});
     f.require_all("mesh", {{"triangles", 8}, {"generation_0", 0}, {"generation_1", 8}});
 
-    // other tests check the widths
-    const datapath::Widths widths = datapath::stream_widths(simulation.setup.registers.formats);
+    // P 3 x 32; N, T 3 x 16; handedness 1; t 2 x 25; P's 2 x 24, w 32, in front 1
+    constexpr std::uint64_t base_vertex = 96 + 48 + 48 + 1 + 50, finished_vertex = 96 + 48 + 50;
+    constexpr std::uint64_t queue_entry = 3 * (base_vertex + 4 + 2 + 96 + 48 + 48 + 81) + 6,
+                            vertex_to_light = 81 + 48 + 50;
     const auto bytes = [](std::uint64_t bits) { return static_cast<double>((bits + 7) / 8); };
     const double tables = 8 * 8 * 2 + 8 * 8 * 6 + 81.0 * static_cast<double>(sum);
-    const double base = bytes(6 * widths.base_vertex), whole = bytes(9 * widths.finished_vertex) + 8 * 3 * 4;
+    const double base = bytes(6 * base_vertex), whole = bytes(9 * finished_vertex) + 8 * 3 * 4;
     REQUIRE(whole > base);
     f.require_all("host", {{"base_triangles", 2},
                            {"base_triangles_dropped", 0},
@@ -136,15 +138,15 @@ TEST_CASE("statistics: two triangles split once have the figures worked out by h
                            {"register_bytes", 4 * 48},
                            {"tessellated_vertices", 9},
                            {"tessellated_mesh_bytes", whole},
-                           {"tessellated_mesh_bytes_unindexed", bytes(24 * widths.finished_vertex)},
+                           {"tessellated_mesh_bytes_unindexed", bytes(24 * finished_vertex)},
                            {"bandwidth_saving", whole / base},
                            {"frames_to_pay_for_tables", tables / (whole - base)}});
-    f.require("formats", {{"queue_entry", widths.triangle}, {"lighting_vertex", widths.emitted_vertex}});
+    f.require("formats", {{"queue_entry", queue_entry}, {"lighting_vertex", vertex_to_light}});
     const datapath::Formats& formats = simulation.setup.registers.formats;
     f.require("streams",
               {{"tag", 6},
-               {"triangle", widths.triangle},
-               {"triangle_to_light", 3 * widths.emitted_vertex},
+               {"triangle", queue_entry},
+               {"triangle_to_light", 3 * vertex_to_light},
                {"view_result", 6 + 4 + 1},
                {"base_point", 6 + 4 + 3 * formats.position.bits + 3 * formats.normal.bits + 2 * formats.texture.bits}});
 }
@@ -174,7 +176,7 @@ TEST_CASE("statistics: each counter of the machine is in its own figure") {
                                      {"culled", 2}});
     f.require_all("tessellation",
                   {{"made_into_2", 1}, {"made_into_3", 2}, {"made_into_4", 4}, {"passed_unchanged", 0}});
-    const double entry = datapath::stream_widths(run.setup.registers.formats).triangle;
+    const double entry = datapath::packed_triangle_bits(run.setup.registers.formats);
     f.require_all("triangle_queue",
                   {{"taken", 24}, {"high_water_mark", 24}, {"high_water_bytes", std::ceil(24 * entry / 8)}});
     f.require_all("lighting", {{"triangles", 7}});
