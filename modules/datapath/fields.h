@@ -221,6 +221,15 @@ constexpr void describe_base_vertex(Fields<Codec>& fields, AnyVertex& vertex) {
     fields.texture("t", vertex.texture, "t");
 }
 
+/// The fields of a vertex whose P', P's, N' are known.
+template <class Codec, class AnyVertex>
+constexpr void describe_displaced(Fields<Codec>& fields, AnyVertex& vertex) {
+    fields.code("code", vertex.code, "d");
+    fields.position("displaced", vertex.displaced, "P'");
+    fields.direction("displaced_n", vertex.displaced_normal, "N'");
+    fields.screen("screen", vertex.screen, "P's");
+}
+
 /// All fields of a vertex, as in the Triangle Queue.
 template <class Codec, class AnyVertex>
 constexpr void describe_vertex(Fields<Codec>& fields, AnyVertex& vertex) {
@@ -228,10 +237,7 @@ constexpr void describe_vertex(Fields<Codec>& fields, AnyVertex& vertex) {
     fields.generation("generation", vertex.generation, "generation");
     fields.flag("displaced_known", vertex.displaced_known, "P', P's, N' are known");
     fields.flag("screen_normal_known", vertex.screen_normal_known, "N's is known");
-    fields.code("code", vertex.code, "d");
-    fields.position("displaced", vertex.displaced, "P'");
-    fields.direction("displaced_n", vertex.displaced_normal, "N'");
-    fields.screen("screen", vertex.screen, "P's");
+    describe_displaced(fields, vertex);
     fields.direction("screen_n", vertex.screen_normal, "N's");
 }
 

@@ -3,95 +3,90 @@
 #include <fmt/core.h>
 
 #include "modules/datapath/cull.h"
+#include "modules/datapath/fields.h"
 #include "modules/datapath/light.h"
 #include "modules/datapath/tessellate.h"
 #include "modules/datapath/transform.h"
+#include "modules/sockets/items.h"
 #include "testbench/common/hash.h"
 
 namespace tessera {
 
 namespace {
 
+/// Hashes the fields of an item, two to a word: a codec of fields.h.
 class Hash {
   public:
     void add(std::uint64_t word) { state_ = mix_hash(state_, word); }
-    void add(std::int32_t high, std::int32_t low) { add(hash_word(high, low)); }
-    std::uint64_t value() const { return state_; }
+    std::int64_t field(const datapath::Field&, std::int64_t value) {
+        pair_ = pair_ << 32 | static_cast<std::uint32_t>(value);
+        odd_ = !odd_;
+        if (!odd_)
+            add(pair_);
+        return value;
+    }
+    static std::uint32_t annotation(const char*, std::uint32_t value) { return value; }
+    std::uint64_t value() const { return odd_ ? mix_hash(state_, pair_) : state_; }
 
   private:
     std::uint64_t state_ = 1;  // not 0, so that items of zeros change the hash
+    std::uint64_t pair_ = 0;
+    bool odd_ = false;
 };
 
-void add_screen(Hash& hash, const datapath::ScreenPosition& screen) {
-    hash.add(screen.x, screen.y);
-    hash.add(screen.w, screen.in_front ? 1 : 0);
-}
-
 /// `known`: includes P', N', P's. N's is checked when the triangle is finished.
-void add_vertex(Hash& hash, const datapath::Vertex& v, bool known) {
-    hash.add(v.position.x, v.position.y);
-    hash.add(v.position.z, v.handedness);
-    hash.add(v.normal.x, v.normal.y);
-    hash.add(v.normal.z, v.tangent.x);
-    hash.add(v.tangent.y, v.tangent.z);
-    hash.add(std::uint64_t{v.texture.u} << 32 | v.texture.v);
-    hash.add(v.generation, known ? 1 : 0);
-    if (!known)
-        return;
-    hash.add(v.code);
-    hash.add(v.displaced.x, v.displaced.y);
-    hash.add(v.displaced.z, v.displaced_normal.x);
-    hash.add(v.displaced_normal.y, v.displaced_normal.z);
-    add_screen(hash, v.screen);
+void add_vertex(Hash& hash, datapath::Fields<Hash>& fields, const datapath::Vertex& v, bool known) {
+    describe_base_vertex(fields, v);
+    hash.add(std::uint64_t{v.generation} << 1 | (known ? 1 : 0));
+    if (known)
+        describe_displaced(fields, v);
 }
 
 /// Hash of a triangle before its decision, without `stopped_by`.
-std::uint64_t hash_to_decide(const datapath::Triangle& triangle, unsigned unknown_vertices) {
+std::uint64_t hash_to_decide(const datapath::Formats& formats, const datapath::Triangle& triangle,
+                             unsigned unknown_vertices) {
     Hash hash;
+    datapath::Fields<Hash> fields(hash, formats);
     for (unsigned k = 0; k < 3; ++k)
-        add_vertex(hash, triangle.vertices[k], (unknown_vertices >> k & 1u) == 0);
+        add_vertex(hash, fields, triangle.vertices[k], (unknown_vertices >> k & 1u) == 0);
     hash.add(triangle.base);
     hash.add(std::uint64_t{triangle.split_by} << 8 | triangle.final_edges);
     return hash.value();
 }
 
-std::uint64_t hash_to_finish(const datapath::Triangle& triangle) {
+std::uint64_t hash_to_finish(const datapath::Formats& formats, const datapath::Triangle& triangle) {
     Hash hash;
+    datapath::Fields<Hash> fields(hash, formats);
     for (const datapath::Vertex& vertex : triangle.vertices)
-        add_vertex(hash, vertex, true);
+        add_vertex(hash, fields, vertex, true);
     hash.add(triangle.base);
     hash.add(std::uint64_t{triangle.split_by} << 8 | triangle.stopped_by);
     return hash.value();
 }
 
 /// Hash of a triangle that will be split, and of the test results of its split edges.
-std::uint64_t hash_to_split(const datapath::TrianglePass& pass) {
+std::uint64_t hash_to_split(const datapath::Formats& formats, const datapath::TrianglePass& pass) {
     Hash hash;
+    datapath::Fields<Hash> fields(hash, formats);
     for (const datapath::Vertex& vertex : pass.triangle.vertices)
-        add_vertex(hash, vertex, true);
+        add_vertex(hash, fields, vertex, true);
     unsigned split_by = 0;
     for (unsigned k = 0; k < 3; ++k) {
         if ((pass.split >> k & 1u) == 0)
             continue;
         const datapath::EdgeTests& edge = pass.edges[k];
         split_by |= edge.tests & datapath::requesting_tests;
-        for (const datapath::Direction& n : {edge.normal, edge.tangent, edge.displaced_normal}) {
-            hash.add(n.x, n.y);
-            hash.add(n.z, static_cast<std::int32_t>(k));
-        }
+        for (const datapath::Direction& n : {edge.normal, edge.tangent, edge.displaced_normal})
+            fields.direction("", n, "");
     }
     hash.add(std::uint64_t{pass.number} << 32 | split_by << 8 | pass.split);
     hash.add(pass.triangle.base);
     return hash.value();
 }
 
-std::uint64_t hash_lit(const LitTriangle& triangle) {
+std::uint64_t hash_lit(const datapath::Formats& formats, const LitTriangle& triangle) {
     Hash hash;
-    for (const LitTriangle::Corner& corner : triangle.corners) {
-        add_screen(hash, corner.screen);
-        hash.add(std::uint64_t{corner.texture.u} << 32 | corner.texture.v);
-        hash.add(corner.intensity);
-    }
+    describe_item(hash, triangle, formats, 0);
     return hash.value();
 }
 
@@ -108,7 +103,8 @@ TransportCheck::TransportCheck(const datapath::Registers& registers,
                                const std::vector<datapath::Triangle>& base_triangles)
     : registers_(registers), passes_(base_triangles.size() + 1), finished_(base_triangles.size() + 1) {
     for (const datapath::Triangle& triangle : base_triangles)
-        passes_[place_of(triangle.base)].decided.expect(hash_to_decide(triangle, unknown_vertices(triangle)));
+        passes_[place_of(triangle.base)].decided.expect(
+            hash_to_decide(registers_.formats, triangle, unknown_vertices(triangle)));
 }
 
 void TransportCheck::finding(const std::string& what) {
@@ -119,26 +115,27 @@ void TransportCheck::finding(const std::string& what) {
 void TransportCheck::write(const datapath::TrianglePass& pass) {
     Passes& base = passes_[place_of(pass.triangle.base)];
     if (pass.told == datapath::Told::midpoints) {
-        base.split.come(hash_to_split(pass));
+        base.split.come(hash_to_split(registers_.formats, pass));
     } else {
         ++triangles_;
-        base.decided.come(hash_to_decide(pass.triangle, pass.new_vertices));
+        base.decided.come(hash_to_decide(registers_.formats, pass.triangle, pass.new_vertices));
     }
     if (pass.split == 0) {
-        base.finished.expect(hash_to_finish(pass.triangle));
+        base.finished.expect(hash_to_finish(registers_.formats, pass.triangle));
     } else if (pass.told == datapath::Told::tests) {
-        base.split.expect(hash_to_split(pass));
+        base.split.expect(hash_to_split(registers_.formats, pass));
     } else {
         datapath::Saturations counted_by_the_unit;
-        datapath::tessellate(pass, registers_.triangulation, registers_.formats, counted_by_the_unit,
-                             [&](const datapath::Triangle& child) {
-                                 base.decided.expect(hash_to_decide(child, unknown_vertices(child)));
-                             });
+        datapath::tessellate(
+            pass, registers_.triangulation, registers_.formats, counted_by_the_unit,
+            [&](const datapath::Triangle& child) {
+                base.decided.expect(hash_to_decide(registers_.formats, child, unknown_vertices(child)));
+            });
     }
 }
 
 void TransportCheck::write(const datapath::Triangle& finished) {
-    finished_[place_of(finished.base)].come(hash_to_finish(finished));
+    finished_[place_of(finished.base)].come(hash_to_finish(registers_.formats, finished));
     datapath::Saturations counted_by_the_unit;
     LitTriangle lit;
     for (unsigned k = 0; k < 3; ++k) {
@@ -156,11 +153,11 @@ void TransportCheck::write(const datapath::Triangle& finished) {
     }
     const auto& v = finished.vertices;
     if (!registers_.back_face_culling || !datapath::faces_away(v[0].screen, v[1].screen, v[2].screen))
-        lit_.expect(hash_lit(lit));
+        lit_.expect(hash_lit(registers_.formats, lit));
 }
 
 void TransportCheck::write(const LitTriangle& lit) {
-    lit_.come(hash_lit(lit));
+    lit_.come(hash_lit(registers_.formats, lit));
 }
 
 WorkResult TransportCheck::result() const {

@@ -34,7 +34,7 @@ struct WorkResult {
 /// Keeps sums of 64-bit hashes, expected minus arrived, per base triangle and one for all lit triangles, instead of a
 /// table of triangles. Differences cancel with a probability of 2^-64. The scoreboard checks the decisions; this checks
 /// that their inputs are right. Children and light come from the datapath's functions, which have unit tests.
-/// Cost: about 70 ns per edge, an eighth of the scoreboard's.
+/// Cost: about 90 ns per edge, a sixth of the scoreboard's.
 ///
 /// Passes may be written by one thread, finished and lit triangles by another.
 class TransportCheck : public tlm::tlm_analysis_if<datapath::TrianglePass>,
