@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <glm/glm.hpp>
+#include <glm/gtc/constants.hpp>
 #include <stdexcept>
 
 #include "testbench/common/error.h"
@@ -21,7 +22,7 @@ namespace tessera {
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
+constexpr double pi = glm::pi<double>();
 constexpr double azimuth = 20 * pi / 180;                       // to the right of the front
 constexpr double elevation = 38 * pi / 180;                     // above it
 constexpr double filled = 0.9;                                  // of the picture's width and height

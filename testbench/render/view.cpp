@@ -1,14 +1,11 @@
 #include "testbench/render/view.h"
 
 #include <algorithm>
-#include <cmath>
 
-#include "testbench/setup/unit_vector.h"
+#include "testbench/setup/view.h"
 
 namespace tessera {
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
 
 struct Rectangle {
     glm::dvec2 low, high;
@@ -55,15 +52,15 @@ glm::dvec3 View::project(const glm::dvec3& point) const {
 }
 
 View make_view(const Job::Camera& camera) {
-    const auto vector = [](const std::array<double, 3>& a) { return glm::dvec3(a[0], a[1], a[2]); };
+    const ViewAxes axes = view_axes(camera);
     View view;
-    view.eye = vector(camera.eye);
-    view.backward = unit_vector(view.eye - vector(camera.target));
-    view.right = unit_vector(glm::cross(brought_near_one(vector(camera.up)), view.backward));
-    view.up = glm::cross(view.backward, view.right);
+    view.eye = {camera.eye[0], camera.eye[1], camera.eye[2]};
+    view.right = axes.right;
+    view.up = axes.up;
+    view.backward = axes.backward;
     view.width = static_cast<int>(camera.viewport_width);
     view.height = static_cast<int>(camera.viewport_height);
-    view.focal = view.height / 2.0 / std::tan(camera.field_of_view * pi / 360);
+    view.focal = focal_length(camera);
     view.centre = glm::dvec2(view.width, view.height) / 2.0;
     view.near_plane = camera.near_plane;
     return view;

@@ -1,6 +1,7 @@
 #include "testbench/setup/thresholds.h"
 
 #include <cmath>
+#include <glm/gtc/constants.hpp>
 
 #include "testbench/setup/height_tests/height_test_host.h"
 #include "testbench/setup/rounding.h"
@@ -45,7 +46,6 @@ datapath::TestParameters make_tests(const TestSettings& tests, const datapath::F
 bool set_highlight_test(const TestSettings& tests, const glm::dvec3& to_light, const glm::dvec3& to_viewer,
                         const datapath::Formats& formats, datapath::TestParameters& registers,
                         std::uint64_t& saturated) {
-    constexpr double pi = 3.14159265358979323846;
     registers.highlight_test = true;
     const glm::dvec3 sum = to_light + to_viewer;
     // With a shorter vector, rounding errors would determine the direction.
@@ -56,7 +56,8 @@ bool set_highlight_test(const TestSettings& tests, const glm::dvec3& to_light, c
         registers.half_vector = {half.x, half.y, half.z};
     }
     // Rounded to nearest, so that the cosines of 0, 60 and 90 degrees are exact.
-    registers.highlight_cosine = to_fixed(std::cos(tests.highlight_angle * pi / 180), 2 * formats.normal.fraction);
+    registers.highlight_cosine =
+        to_fixed(std::cos(tests.highlight_angle * glm::pi<double>() / 180), 2 * formats.normal.fraction);
     registers.highlight_normal_threshold =
         to_normal_register("tests.highlight_normal_threshold", tests.highlight_normal_threshold, true, formats);
     return is_there;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/gtc/constants.hpp>
 
 #include "testbench/common/error.h"
 #include "testbench/setup/rounding.h"
@@ -24,8 +25,7 @@ ViewAxes view_axes(const CameraSettings& camera) {
 }
 
 double focal_length(const CameraSettings& camera) {
-    constexpr double pi = 3.14159265358979323846;
-    return static_cast<double>(camera.viewport_height) / 2 / std::tan(camera.field_of_view * pi / 360);
+    return static_cast<double>(camera.viewport_height) / 2 / std::tan(camera.field_of_view * glm::pi<double>() / 360);
 }
 
 double corner_secant(const CameraSettings& camera) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <glm/gtc/constants.hpp>
 
 #include "testbench/common/error.h"
 #include "testbench/input/mesh/mesh_limits.h"
@@ -14,7 +15,7 @@
 namespace tessera {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
+constexpr double pi = glm::pi<double>();
 
 void check_count(const char* key, std::int64_t value, std::int64_t smallest) {
     if (value < smallest || value > largest_grid)

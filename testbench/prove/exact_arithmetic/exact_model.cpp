@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/gtc/constants.hpp>
 #include <memory>
 #include <stdexcept>
 
@@ -13,8 +14,6 @@
 namespace tessera {
 
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
 
 /// Bits of a code for which no sum over the map reaches 2^52, the golden model's limit.
 int code_bits(const HeightMap& map) {
@@ -82,7 +81,7 @@ ExactModel::ExactModel(const Job& job, const BaseMesh& original, const HeightMap
     map_.set_height_test(std::make_shared<golden::SummedHeightTest>(
         tests.threshold("summed_height_threshold") * highest, tests.summed_height_unit == SummedHeightUnit::area));
     parameters_.view_threshold = tests.view_threshold;
-    parameters_.highlight_cosine = std::cos(tests.highlight_angle * pi / 180);
+    parameters_.highlight_cosine = std::cos(tests.highlight_angle * glm::pi<double>() / 180);
     parameters_.highlight_normal_threshold = tests.highlight_normal_threshold;
     map_.derive_normals(parameters_.scale, {setup.texel_size[0], setup.texel_size[1]});
 
