@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "modules/datapath/edge_tests.h"
-#include "modules/stage/stage_steps.h"
 #include "modules/units/edge_tests/sequence_tests.h"
+#include "testbench/tests/support/stub_test.h"
 #include "testbench/tests/support/timed_modules.h"
 
 // Sequence Tests alone, through its sockets. The two table tests are stubs that respond with given bits.
@@ -47,31 +47,6 @@ HeightResult answer(const HeightOperands& edge) {
     return {edge.tag, (says(edge.tag) & datapath::summed_height_bit) != 0};
 }
 
-/// Replaces a table test: answers edges and records what it receives.
-template <class Operands, class Result>
-class StubTest : public Stage<Operands, Result> {
-  public:
-    StreamInput<Operands> input{"input"};
-    StreamOutput<Result> output{"output"};
-    std::vector<PartTag> asked;
-    Tag answers_for = ~Tag{0};  ///< another triangle than the edge's
-
-    StubTest(const sc_core::sc_module_name& name, const UnitContext& context, const UnitTiming& timing)
-        : Stage<Operands, Result>(name, context, timing) {
-        this->takes_from(context, input);
-        this->delivers_to(context, output, edge_parts);
-    }
-
-  private:
-    Result process(const Operands& edge, const Entries&) override {
-        asked.push_back(edge.tag);
-        Result result = edge.tag.is_edge() ? answer(edge) : Result{edge.tag};
-        if (answers_for != ~Tag{0})
-            result.tag.triangle = answers_for;
-        return result;
-    }
-};
-
 struct Bench {
     datapath::Registers registers;
     Design design;
@@ -90,8 +65,8 @@ struct Bench {
         : design(with(timing)),
           sink("sink", clock, timing.stalls),
           unit("sequence_tests", context),
-          normal_test("normal_test", context, {5, 1, 1}),
-          summed_height_test("summed_height_test", context, {7, 12, 1}),
+          normal_test("normal_test", context, {5, 1, 1}, answer),
+          summed_height_test("summed_height_test", context, {7, 12, 1}, answer),
           normal_operands("normal_operands", clock, timing.stalls),
           height_operands("height_operands", clock, timing.stalls),
           tex_coord_results("tex_coord_results", clock, timing.stalls),

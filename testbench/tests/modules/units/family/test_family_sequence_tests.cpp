@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "modules/datapath/edge_tests.h"
-#include "modules/stage/stage_steps.h"
 #include "modules/units/family/sequence_tests.h"
 #include "testbench/tests/support/case_table.h"
+#include "testbench/tests/support/stub_test.h"
 #include "testbench/tests/support/timed_modules.h"
 
 // Sequence Tests of a machine of families alone, through its sockets, with three lanes and two Normal Tests. The table
@@ -47,27 +47,6 @@ NormalResult answer(const NormalOperands& part) {
 HeightResult answer(const HeightOperands& edge) {
     return {edge.tag, (says(edge.tag) & datapath::summed_height_bit) != 0};
 }
-
-/// Replaces a table test; records what it receives.
-template <class Operands, class Result>
-class StubTest : public Stage<Operands, Result> {
-  public:
-    StreamInput<Operands> input{"input"};
-    StreamOutput<Result> output{"output"};
-    std::vector<PartTag> asked;
-
-    StubTest(const sc_core::sc_module_name& name, const UnitContext& context, const UnitTiming& timing)
-        : Stage<Operands, Result>(name, context, timing) {
-        this->takes_from(context, input);
-        this->delivers_to(context, output);
-    }
-
-  private:
-    Result process(const Operands& part, const Entries&) override {
-        asked.push_back(part.tag);
-        return answer(part);
-    }
-};
 
 Design with(const Timing& timing) {
     Design design;
@@ -108,9 +87,9 @@ struct Bench {
         : registers(with_families()),
           design(with(timing)),
           unit("sequence_tests", context),
-          first_normal_test("normal_test", context, {5, 2, 1}),
-          second_normal_test("normal_test_1", context, {5, 2, 1}),
-          summed_height_test("summed_height_test", context, {7, 3, 1}) {
+          first_normal_test("normal_test", context, {5, 2, 1}, answer),
+          second_normal_test("normal_test_1", context, {5, 2, 1}, answer),
+          summed_height_test("summed_height_test", context, {7, 3, 1}, answer) {
         for (CycleProcess* process :
              {static_cast<CycleProcess*>(&summed_height_test), static_cast<CycleProcess*>(&first_normal_test),
               static_cast<CycleProcess*>(&second_normal_test), static_cast<CycleProcess*>(&unit)})
