@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "testbench/output/report/timing_statistics.h"
+#include "testbench/tests/support/case_table.h"
+#include "testbench/tests/support/job_settings.h"
 #include "testbench/tests/support/timed_checks.h"
 
 // Bottlenecks of a machine that has not run: its units' activities are set by hand, over 1000 cycles.
@@ -187,6 +189,26 @@ TEST_CASE("bottleneck of one triangle: latency binds") {
                                 "throughput is used; at most 2.4 times faster ") &&
                          EndsWith("(an item stays 20.0 cycles in transform)"));
 }
+
+namespace {
+
+struct MemoryUse {
+    std::string name, settings, text;
+};
+
+const CaseTable memory_uses("bottleneck, a memory: ",
+                            {MemoryUse{"its ports", "", "summed_height_table: 99.9 % of its port slots are taken; "},
+                             {"requests that wait for a bank", "timing.summed_height_table_banks=8",
+                              "summed_height_table: in 99.3 % of all cycles a request waits for its ports; "},
+                             {"the off-chip channel", "hardware.queue_capacity=4 timing.off_chip_bandwidth=1",
+                              "off_chip_memory: 99.9 % of the off-chip channel's cycles are taken; "}},
+                            [](const MemoryUse& use) {
+                                TimedRun simulation(setup_of(with_settings(full_split_job(1, 4), use.settings)));
+                                CHECK_THAT(bottleneck_text(simulation.machine, simulation.cycles()),
+                                           StartsWith(use.text));
+                            });
+
+}  // namespace
 
 // The second machine has no base triangles.
 TEST_CASE("timing of two machines: rows of each, and the bottleneck of the last one to finish") {
