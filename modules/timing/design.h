@@ -54,8 +54,7 @@ constexpr unsigned displace_vertex_latency(const Design& design) {
 }
 
 /// Most triangles that have left the queue but of which no part has reached Pass or Tessellate: one in Get Triangle,
-/// and one for each place in the units between. Pass or Tessellate has room for that many to wait for
-/// their parts.
+/// and one for each place in the units between. Pass or Tessellate has room for that many to wait for their parts.
 constexpr unsigned triangles_ahead_of_parts(const Design& design) {
     unsigned triangles = 1 + 1;
     for (const UnitSpec& unit : all_units) {

@@ -29,8 +29,8 @@ namespace tessera {
 /// Timing: one part per interval on each output, the first a latency after the triangle was accepted.
 /// Capacity: one triangle; the next is accepted when all parts of the last have been accepted.
 /// Waits for the Triangle Queue or the host; accepts a host triangle only while the queue is below its watermark
-/// and, in timed mode, has nothing to send, so that the queue does not grow while it has work. Held back by Calculate New P, Tessellation
-/// Tests and Pass or Tessellate.
+/// and, in timed mode, has nothing to send, so that the queue does not grow while it has work. Held back by Calculate
+/// New P, Tessellation Tests and Pass or Tessellate.
 class GetTriangle : public Unit {
   public:
     StreamInput<datapath::Triangle> from_host{"from_host"};

@@ -18,8 +18,9 @@ namespace tessera {
 
 /// Triangle Queue (paper figure 7): waiting triangles, first in first out (the paper's) or last in first out.
 ///
-/// In:   triangles from Tessellation, in the family design from Pass or Tessellate. Out: triangles to Get Triangle, and whether fewer triangles than the watermark
-///       wait, whenever that changes: one bit, which Get Triangle receives in the same cycle and stores.
+/// In:   triangles from Tessellation, in the family design from Pass or Tessellate. Out: triangles to Get Triangle, and
+///       whether fewer triangles than the watermark wait, whenever that changes: one bit, which Get Triangle receives in
+///       the same cycle and stores.
 /// Capacity: `capacity` triangles on chip, unbounded by default and in functional mode; the high-water mark shows what
 ///       a design needs. Beyond it triangles spill to off-chip memory: the newest (first in first out), or the oldest
 ///       on chip (last in first out). They return when there is room on chip (first in first out; until none is left,

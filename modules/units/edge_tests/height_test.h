@@ -15,7 +15,8 @@ namespace tessera {
 /// In:   HeightOperands. Out: HeightResult; of a Rank Test with the rank, by which the `greatest_rank` cut chooses.
 /// Memory: the test's table; for some edges the displacement map (HeightTestFunctions::reads_codes).
 /// Timing: one edge per interval, or per table reads if they take longer; the test's latency follows the last entry.
-/// Waits for Calculate New U (tests cheapest first: Sequence Tests) and the table, or the displacement map; held back by the collector of the tests.
+/// Waits for Calculate New U (tests cheapest first: Sequence Tests) and the table, or the displacement map; held back by
+/// the collector of the tests.
 class HeightTestUnit : public Stage<HeightOperands, HeightResult> {
   public:
     StreamInput<HeightOperands> input{"input"};

@@ -28,7 +28,8 @@ namespace tessera {
 ///       Highlight Test adds its own, and nothing to the interval. An edge of a base triangle starts when the map
 ///       entries of all its corners in this unit have arrived.
 /// State: a base triangle's tag, and N' of its corners.
-/// Waits for Calculate New U (tests cheapest first: Sequence Tests) and the normal map. Held back by the collector of the tests.
+/// Waits for Calculate New U (tests cheapest first: Sequence Tests) and the normal map. Held back by the collector of
+/// the tests.
 class NormalTest : public Stage<NormalOperands, NormalResult> {
   public:
     StreamInput<NormalOperands> input{"input"};

@@ -25,8 +25,7 @@ namespace tessera {
 ///       `split_by` and `parent`. Both in the order of the families. A base triangle is the only child of its family.
 /// Arithmetic: logic; for culling two products of screen bits + 1 and a compare.
 /// Timing: one family per interval is decided, when its last edge has arrived; then one child per interval leaves on
-///       each output, the first a latency later. A culled child takes an interval of
-///       the output to Lighting.
+///       each output, the first a latency later. A culled child takes an interval of the output to Lighting.
 /// Capacity: `buffer` families, from arrival until the last child has left. A family is accepted only if a place is
 ///       free, and only then are its edges sent: an edge without a place would hold back those that older families
 ///       wait for, a deadlock.

@@ -29,8 +29,7 @@ namespace tessera {
 ///       the edges, every n-th to each of n lanes.
 /// Arithmetic: wiring; with the `shorter` diagonal two Manhattan lengths and a compare. New vertices' generations
 ///       saturate (counted), which can only happen with the Generation Test off.
-/// Timing: the family and the first edge of each lane a latency after the last part arrived, then one per
-///       interval.
+/// Timing: the family and the first edge of each lane a latency after the last part arrived, then one per interval.
 /// Capacity: one triangle being joined and one whose edges are being sent; triangles wait at the input from Get
 ///       Triangle until their first part arrives (triangles_ahead_of_parts).
 /// Waits for Transform; held back by Tessellation Tests and Pass or Tessellate.
