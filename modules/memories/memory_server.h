@@ -62,6 +62,8 @@ class MemoryServer : public Unit {
     /// Does the same, and sets the response.
     static void access(Storage& storage, MemoryRequest& request, bool may_write);
 
+    /// For requests that do not pass through the queue.
+    void count_held_up(std::uint64_t cycles) { cycles_held_up_ += cycles; }
     void show_waiting(Signals& signals) const;
     bool held_up() const { return held_up_; }
 

@@ -28,6 +28,25 @@ class Storage {
         }
     }
 
+    /// The same, each zero-extended; of any size up to eight bytes. Returns false if one is out of range.
+    bool read_entries(const std::uint64_t* addresses, unsigned count, unsigned entry_bytes, std::uint64_t* to) const {
+        const std::uint64_t mask = entry_bytes >= 8 ? ~std::uint64_t{0} : (std::uint64_t{1} << (8 * entry_bytes)) - 1;
+        // Copies: to the compiler `to` could be these.
+        const unsigned char* const bytes = bytes_.data();
+        const std::uint64_t base = base_, whole = bytes_.size() < sizeof mask ? 0 : bytes_.size() - sizeof mask + 1;
+        for (unsigned k = 0; k < count; ++k) {
+            std::uint64_t entry = 0;
+            if (addresses[k] - base < whole)
+                std::memcpy(&entry, bytes + (addresses[k] - base), sizeof entry);
+            else if (covers(addresses[k], entry_bytes))
+                read(addresses[k], reinterpret_cast<unsigned char*>(&entry), entry_bytes);
+            else
+                return false;
+            to[k] = entry & mask;
+        }
+        return true;
+    }
+
     /// Only covered addresses may be read or written.
     void read(std::uint64_t address, unsigned char* to, std::size_t length) const {
         const std::uint64_t first = address - base_;

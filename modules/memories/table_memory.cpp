@@ -27,7 +27,9 @@ TableMemory::TableMemory(const sc_core::sc_module_name& name, CycleScheduler& cl
       waiting_requests_(std::uint64_t{timing.buffer} + timing.window),
       copied_entries_(copied_entries(layout, timing)),
       address_bits_(static_cast<std::uint64_t>(datapath::bits_for(std::uint64_t{layout.rows} * layout.columns))),
-      channel_(timing.cache.bytes == 0 ? nullptr : off_chip) {}
+      channel_(timing.cache.bytes == 0 ? nullptr : off_chip),
+      may_be_prompt_(timing.cache.bytes == 0 && stalls.per_mille == 0),
+      served_(timing.buffer) {}
 
 TableMemory::TableMemory(const sc_core::sc_module_name& name, CycleScheduler& clock,
                          const datapath::TableLayout& layout, const MemoryTiming& timing, const StallParameters& stalls,
@@ -70,6 +72,33 @@ std::uint64_t TableMemory::serve(MemoryRequest& request, std::uint64_t cycle) {
     const std::uint64_t answer_at = channel_->serve(request.bytes(), cycle);
     channel_cycles_ += channel_->ready() - cycle;
     return answer_at;
+}
+
+bool TableMemory::is_prompt() {
+    return may_be_prompt_ && socket.size() == 1;
+}
+
+bool TableMemory::read_promptly(const std::uint64_t* addresses, unsigned count, unsigned entry_bytes,
+                                std::uint64_t* entries, std::uint64_t offered, Times& times) {
+    if (!storage_->read_entries(addresses, count, entry_bytes, entries))
+        return false;
+    transactions_ += count;
+    times.accepted = std::max(offered, served_[oldest_served_]);
+    const std::uint64_t first = std::max(times.accepted, last_served_);
+    last_served_ = std::max(first, ports_.ready(addresses, count));
+    count_held_up(last_served_ - first);
+    served_[oldest_served_] = last_served_;
+    oldest_served_ = oldest_served_ + 1 == served_.size() ? 0 : oldest_served_ + 1;
+    times.answered = last_answer_ = std::max(last_answer_, ports_.serve(addresses, count, last_served_));
+    while (!answers_due_.empty() && answers_due_.front() <= offered)
+        answers_due_.pop();
+    if (answers_due_.full())
+        answers_due_.grow();
+    if (last_answer_ > offered)
+        answers_due_.push(last_answer_);
+    activity_.item_through(offered, last_answer_, answers_due_.size());
+    activity_.set_until(last_answer_, State::starved, last_served_, State::busy);
+    return true;
 }
 
 void TableMemory::b_transport(int, MemoryRequest& request, sc_core::sc_time& delay) {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <systemc>
+#include <vector>
 
 #include "modules/memories/banked_ports.h"
 #include "modules/memories/channel.h"
@@ -25,7 +26,9 @@ namespace tessera {
 /// Utilisation: modules/README.md, Accounting. (Decision: cycles in which a request is held up count, since bank
 /// conflicts delay requests while most ports are idle.)
 /// Errors: a write gives TLM_COMMAND_ERROR_RESPONSE, an address out of range TLM_ADDRESS_ERROR_RESPONSE.
-class TableMemory : public MemoryServer {
+/// Prompt (PromptMemory): on chip, with one reader, without stalls. The clock then does not call it: each request's cycles
+/// follow from those of the requests before it.
+class TableMemory : public MemoryServer, public PromptMemory {
   public:
     /// off_chip: used if the table has a cache.
     TableMemory(const sc_core::sc_module_name& name, CycleScheduler& clock, const datapath::TableLayout& layout,
@@ -53,6 +56,10 @@ class TableMemory : public MemoryServer {
     }
     void trace_signals(Signals& signals) const override;
 
+    bool is_prompt() override;
+    bool read_promptly(const std::uint64_t* addresses, unsigned count, unsigned entry_bytes, std::uint64_t* entries,
+                       std::uint64_t offered, Times& times) override;
+
   private:
     TableMemory(const sc_core::sc_module_name& name, CycleScheduler& clock, std::shared_ptr<Storage> storage,
                 const datapath::TableLayout& layout, const MemoryTiming& timing, const StallParameters& stalls,
@@ -73,6 +80,13 @@ class TableMemory : public MemoryServer {
     std::uint64_t last_address_ = 0;  // of the request served last
     unsigned last_entries_ = 0;
     unsigned last_entry_bytes_ = 0;
+    // Of requests read promptly:
+    const bool may_be_prompt_;
+    std::vector<std::uint64_t> served_;  // the cycles in which the last ones left the buffer, as many as it holds
+    std::size_t oldest_served_ = 0;
+    std::uint64_t last_served_ = 0;
+    Ring<std::uint64_t> answers_due_;
+    std::uint64_t last_answer_ = 0;
 };
 
 /// The displacement map: one unsigned code per texel. Read by Displace Vertex and, with Formats::codes, by the Summed

@@ -102,6 +102,17 @@ void MemoryPort::request(const std::uint64_t* addresses, unsigned count) {
     reads_ += count;
 }
 
+PromptMemory::Times MemoryPort::read_promptly(const std::uint64_t* addresses, unsigned count, std::uint64_t* entries,
+                                              std::uint64_t offered) {
+    ++requests_;
+    reads_ += count;
+    PromptMemory::Times times{};
+    if (!prompt_->read_promptly(addresses, count, entry_bytes_, entries, offered, times))
+        check_response(
+            {tlm::TLM_READ_COMMAND, count, entry_bytes_, {addresses[0]}, nullptr, tlm::TLM_ADDRESS_ERROR_RESPONSE});
+    return times;
+}
+
 void MemoryPort::write(std::uint64_t address) {
     offer(tlm::TLM_WRITE_COMMAND, &address, 1);
 }

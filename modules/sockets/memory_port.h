@@ -6,6 +6,7 @@
 #include <cstring>
 #include <systemc>
 #include <tlm>
+#include <type_traits>
 #include <vector>
 
 #include "modules/sockets/answer_watch.h"
@@ -82,6 +83,11 @@ class MemoryPort {
     unsigned char* entry_to_write() { return slots_.at(slots_.size()).data.data(); }
     void write(std::uint64_t address);
 
+    /// True if read_promptly() may take the place of request(), while none is under way (PromptMemory).
+    bool is_prompt() const { return prompt_ != nullptr && watch_ == nullptr && prompt_->is_prompt(); }
+    PromptMemory::Times read_promptly(const std::uint64_t* addresses, unsigned count, std::uint64_t* entries,
+                                      std::uint64_t offered);
+
     /// True if the oldest request under way has been answered.
     bool answered() const { return answered_ > 0; }
     bool answer_is_read() const { return slots_.front().request.command == tlm::TLM_READ_COMMAND; }
@@ -123,6 +129,8 @@ class MemoryPort {
     void bind(Memory& memory) {
         bind(memory, memory);
         interposed_ = false;
+        if constexpr (std::is_base_of_v<PromptMemory, Memory>)
+            prompt_ = &memory;
     }
     /// Binds it through a module in front of the memory.
     template <class Interposer>
@@ -177,6 +185,7 @@ class MemoryPort {
     bool on_offer_ = false;     // the newest of these is not accepted yet
     const sc_core::sc_object* memory_ = nullptr;
     bool interposed_ = true;
+    PromptMemory* prompt_ = nullptr;  // null: a memory that only answers
     AnswerWatch* watch_ = nullptr;
     std::uint64_t loaded_from_ = 0;
     std::vector<unsigned char> loaded_;  // if it compares

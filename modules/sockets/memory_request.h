@@ -23,6 +23,24 @@ struct MemoryRequest {
     bool is_ok() const { return response == tlm::TLM_OK_RESPONSE; }
 };
 
+/// A memory that can tell, when a request is made, when it will be accepted and answered. Its single reader then needs
+/// no phases. The cycles are those of the protocol below.
+class PromptMemory {
+  public:
+    struct Times {
+        std::uint64_t accepted, answered;
+    };
+    /// Ask after elaboration.
+    virtual bool is_prompt() = 0;
+    /// Reads entries, zero-extended, by a request that is offered in cycle `offered`: no earlier than that in which the
+    /// previous one is accepted. Returns false if an address is out of range.
+    virtual bool read_promptly(const std::uint64_t* addresses, unsigned count, unsigned entry_bytes,
+                               std::uint64_t* entries, std::uint64_t offered, Times& times) = 0;
+
+  protected:
+    ~PromptMemory() = default;
+};
+
 /// The protocol between a unit's MemoryPort and a MemoryServer. It has its own traits class, because a memory of the
 /// base protocol, which reads one address, would answer a gather wrongly, without a message; so the binding does not
 /// compile. base_protocol_bridge.h connects to memories of the TLM-2.0 base protocol.

@@ -16,6 +16,10 @@ class MemoryPort;
 using datapath::Entries;
 using datapath::Reads;
 
+/// How a stage reads: not at all; by requests that it offers and whose answers it takes; all at once, from a prompt
+/// memory (PromptMemory).
+enum class TableReads { none, requested, prompt };
+
 /// A unit that accepts an item, reads any table entries it needs, processes it, and passes the result on. A derived
 /// unit declares its sockets once and implements the functions below; both modes run the same functions.
 ///
@@ -59,12 +63,16 @@ class Stage : public Unit {
 
     /// Determines the entries that an item needs.
     virtual void reads(const In&, Reads&) const {}
-    /// Processes an item with the entries read for it, and returns the result.
+    /// Processes an item with the entries read for it, and returns the result. A prompt memory's entries are there
+    /// before they arrive.
     virtual Out process(const In& item, const Entries& entries) = 0;
+    /// Within process(), timed mode: the cycle in which the item's entries arrive.
+    std::uint64_t entries_arrive() const { return entries_arrive_; }
 
     /// Signals in addition to the items' fields, for an item that has been processed.
     virtual void trace_processed(Signals&, const In&, const Out&) const {}
 
+    void start_of_simulation() override;
     void step() override;
 
     const UnitTiming timing_;
@@ -77,15 +85,16 @@ class Stage : public Unit {
     std::uint64_t over_ports(Figure figure) const;
     void b_transport(In& item, sc_core::sc_time& delay);
     void read_entries(const In& item, Entries& entries, sc_core::sc_time& delay);
-    // Two copies: units without tables skip all that concerns requests.
-    template <bool HasTables>
+    // Three copies: units without tables skip all that concerns requests.
+    template <TableReads Access>
     void step_with();
-    template <bool HasTables>
+    template <TableReads Access>
     void start(std::uint64_t cycle);
     void take_answers(std::uint64_t cycle);
 
     const sc_core::sc_time latency_;
     bool may_wait_ = false;
+    std::uint64_t entries_arrive_ = 0;
     StreamInput<In>* input_ = nullptr;
     const std::shared_ptr<Machinery> machinery_;  // its deleter, unlike a unique_ptr's, needs no stage_steps.h
 };

@@ -26,6 +26,7 @@ struct Stage<In, Out>::Machinery {
         std::uint8_t answered = 0;
         std::array<std::uint8_t, Reads::most_requests> port;
         std::array<std::uint8_t, Reads::most_requests> count;
+        std::uint64_t answered_at = 0;  // from a prompt memory: the cycle of the last answer
 
         bool processed() const { return answered == requests; }
     };
@@ -33,8 +34,25 @@ struct Stage<In, Out>::Machinery {
     Machinery(const UnitTiming& timing, unsigned pipelines, unsigned memory_latency)
         : servers(pipelines), pipeline(timing, pipelines, memory_latency) {}
 
+    /// Reads the entries of the item that starts in `cycle` from a prompt memory: each request is offered when the one
+    /// before it is accepted. Returns the cycle of the last answer.
+    std::uint64_t read_promptly(std::uint64_t cycle) {
+        unsigned entry = 0;
+        for (unsigned k = 0; k < reads.requests(); ++k) {
+            const PromptMemory::Times times =
+                ports[0]->read_promptly(reads.addresses() + entry, reads.count(k), &entries[entry], cycle);
+            entry += reads.count(k);
+            cycle = times.accepted;
+            last_answer = std::max(last_answer, times.answered);
+        }
+        asked_at = cycle;
+        return last_answer;
+    }
+
     /// Makes the requests of the item started last while the memories accept them. Returns true once all are accepted.
-    bool ask() {
+    bool ask(std::uint64_t cycle) {
+        if (prompt)
+            return asked_at <= cycle;
         for (; asked < reads.requests(); ++asked) {
             MemoryPort& port = *ports[reads.port(asked)];
             if (!port.may_request())
@@ -64,6 +82,10 @@ struct Stage<In, Out>::Machinery {
     Entries entries{};           // that have arrived for the first item that waits for entries
     unsigned come = 0;           // number of these entries
     std::size_t waiting = 0;     // the first item whose answers have not all arrived
+    bool may_be_prompt = false;  // there is one port, to a prompt memory
+    bool prompt = false;         // the items under way have read promptly
+    std::uint64_t asked_at = 0;  // the cycle in which the last request of the item started last is accepted
+    std::uint64_t last_answer = 0;
 };
 
 template <class In, class Out>
@@ -149,19 +171,21 @@ void Stage<In, Out>::read_entries(const In& item, Entries& entries, sc_core::sc_
 }
 
 template <class In, class Out>
-template <bool HasTables>
+template <TableReads Access>
 void Stage<In, Out>::start(std::uint64_t cycle) {
     Machinery& m = *machinery_;
     typename Machinery::Slot& slot = m.pipeline.start(cycle);
     const In& item = input_->front();
-    if (HasTables || clock_.observed())  // waveforms show it
+    if (Access == TableReads::requested || clock_.observed())  // waveforms show it
         slot.item = item;
     activity_.item_in(cycle);
-    if (HasTables) {
+    if (Access != TableReads::none) {
         slot.requests = slot.answered = 0;
         m.reads.clear();
-        m.asked = m.asked_entries = 0;
         reads(item, m.reads);
+    }
+    if (Access == TableReads::requested) {
+        m.asked = m.asked_entries = 0;
         slot.requests = static_cast<std::uint8_t>(m.reads.requests());
         // The first condition tells the compiler the bound that the second keeps.
         for (unsigned k = 0; k < Reads::most_requests && k < m.reads.requests(); ++k) {
@@ -169,7 +193,14 @@ void Stage<In, Out>::start(std::uint64_t cycle) {
             slot.count[k] = static_cast<std::uint8_t>(m.reads.count(k));
         }
     }
-    if (HasTables && slot.requests > 0)
+    if (Access == TableReads::prompt) {
+        slot.answered_at = m.reads.requests() == 0 ? 0 : m.read_promptly(cycle);
+        if (m.reads.requests() > 0)
+            m.pipeline.finish(m.pipeline.size() - 1, slot.answered_at + m.pipeline.latency());
+        m.asked = m.reads.requests();
+        entries_arrive_ = slot.answered_at;
+    }
+    if (Access == TableReads::requested && slot.requests > 0)
         m.pipeline.finish(m.pipeline.size() - 1, never);
     else
         slot.result = process(item, m.entries);
@@ -191,6 +222,7 @@ void Stage<In, Out>::take_answers(std::uint64_t cycle) {
         port.pop_answer();
         if (slot.processed()) {
             m.come = 0;
+            entries_arrive_ = cycle;
             slot.result = process(slot.item, m.entries);
             m.pipeline.finish(m.waiting, cycle + m.pipeline.latency());
         }
@@ -198,46 +230,62 @@ void Stage<In, Out>::take_answers(std::uint64_t cycle) {
 }
 
 template <class In, class Out>
-void Stage<In, Out>::step() {
-    if (reads_tables())
-        step_with<true>();
-    else
-        step_with<false>();
+void Stage<In, Out>::start_of_simulation() {
+    const auto& ports = machinery_->ports;
+    machinery_->may_be_prompt = ports[0] != nullptr && ports[1] == nullptr && ports[0]->is_prompt();
 }
 
 template <class In, class Out>
-template <bool HasTables>
+void Stage<In, Out>::step() {
+    Machinery& m = *machinery_;
+    if (m.may_be_prompt && m.pipeline.empty())
+        m.prompt = !clock_.observed();  // waveforms show requests and answers
+    if (!reads_tables())
+        step_with<TableReads::none>();
+    else if (m.prompt)
+        step_with<TableReads::prompt>();
+    else
+        step_with<TableReads::requested>();
+}
+
+template <class In, class Out>
+template <TableReads Access>
 void Stage<In, Out>::step_with() {
     const std::uint64_t cycle = clock_.last_cycle();
     Machinery& m = *machinery_;
-    if (HasTables)
+    if (Access == TableReads::requested)
         take_answers(cycle);
     while (m.pipeline.front_finished(cycle) && m.fork.deliver(m.pipeline.front().result)) {
         m.pipeline.pop();
-        if (HasTables)
+        if (Access == TableReads::requested)
             --m.waiting;
         activity_.item_out(cycle);
     }
     bool lacking = false;
-    while ((!HasTables || m.ask()) && !input_->empty() && m.pipeline.may_start(cycle)) {
+    while ((Access == TableReads::none || m.ask(cycle)) && !input_->empty() && m.pipeline.may_start(cycle)) {
         lacking = may_wait_ && !may_start(input_->front());
         if (lacking)
             break;
-        start<HasTables>(cycle);
+        start<Access>(cycle);
     }
-    if (HasTables)
+    if (Access == TableReads::requested)
         m.skip_processed();
     if (m.pipeline.front_finished(cycle))
         activity_.set(cycle, State::blocked, m.fork.blocked_by());
-    else if (HasTables && m.waiting == 0 && !m.pipeline.empty())
+    else if (Access == TableReads::requested && m.waiting == 0 && !m.pipeline.empty())
         activity_.set(cycle, State::waiting_for_memory, m.awaited().memory());
+    else if (Access == TableReads::prompt && !m.pipeline.empty() && m.pipeline.front().answered_at > cycle)
+        activity_.set_until(m.pipeline.front().answered_at, State::busy, cycle, State::waiting_for_memory,
+                            m.ports[0]->memory());
     else if (!m.pipeline.empty() || (!lacking && !input_->empty()))
         activity_.set(cycle, State::busy);
     else
         activity_.set(cycle, State::starved, lacking ? awaited_unit() : nullptr);
     wake_at(m.pipeline.next_finished(cycle));
     if (!input_->empty())
-        wake_at(m.pipeline.next_start(cycle));
+        wake_at(m.pipeline.next_start(cycle, Access == TableReads::prompt ? m.asked_at : 0));
+    if (Access == TableReads::prompt && lacking && m.last_answer > cycle)
+        wake_at(m.last_answer);
 }
 
 }  // namespace tessera

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <systemc>
+#include <utility>
 
 #include "modules/timing/state.h"
 
@@ -25,8 +26,16 @@ class Activity {
     // Called in every step; without the attributes gcc does not inline them there.
     /// Sets the state at the end of `cycle`. It lasts until another is set. The last call in a cycle counts.
     [[gnu::always_inline]] void set(std::uint64_t cycle, State state, const sc_core::sc_object* by = nullptr) {
-        if (state != state_ || by != by_)
+        if (state != state_ || by != by_ || until_ != UINT64_MAX)
             change(cycle, state, by);
+    }
+    /// The same for a state of which the end is known: from cycle `until` on it is `then`.
+    [[gnu::always_inline]] void set_until(std::uint64_t until, State then, std::uint64_t cycle, State state,
+                                          const sc_core::sc_object* by = nullptr) {
+        if (state != state_ || by != by_ || cycle > until_)
+            change(cycle, state, by);
+        until_ = until;
+        then_ = then;
     }
 
     [[gnu::always_inline]] void item_in(std::uint64_t cycle) {
@@ -44,6 +53,18 @@ class Activity {
         --level_;
         if (observer_ != nullptr)
             observer_->item(cycle, false);
+    }
+
+    /// An item of which both cycles are known when it comes. level: the items in the unit at the end of cycle `in`.
+    void item_through(std::uint64_t in, std::uint64_t out, std::uint64_t level) {
+        item_cycles_ += out - in;
+        ++items_in_;
+        ++items_out_;
+        high_water_mark_ = std::max(high_water_mark_, level);
+        if (observer_ != nullptr) {
+            observer_->item(in, true);
+            observer_->item(out, false);
+        }
     }
 
     /// Accounts for the cycles up to `cycle`, the run's end.
@@ -84,8 +105,17 @@ class Activity {
         close(cycle);
         state_ = state;
         by_ = by;
+        until_ = UINT64_MAX;
     }
     void close(std::uint64_t cycle) {
+        if (until_ < cycle) {
+            add_cycles(std::exchange(until_, UINT64_MAX));
+            state_ = then_;
+            by_ = nullptr;
+        }
+        add_cycles(cycle);
+    }
+    void add_cycles(std::uint64_t cycle) {
         if (cycle <= since_)
             return;
         const std::uint64_t length = cycle - since_;
@@ -116,6 +146,8 @@ class Activity {
 
     State state_ = State::starved;
     const sc_core::sc_object* by_ = nullptr;
+    std::uint64_t until_ = UINT64_MAX;  // the state is then_ from this cycle on
+    State then_ = State::starved;
     std::uint64_t since_ = 0;
     std::array<std::uint64_t, states> cycles_{};
     std::array<Share, most_shares> shares_{};

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -62,8 +63,12 @@ class ElasticPipeline {
     std::uint64_t next_finished(std::uint64_t cycle) const {
         return !empty() && stages_.front().finished > cycle ? stages_.front().finished : never;
     }
-    /// The next cycle after `cycle` at which an item may start; `never` if that depends on a free place.
-    std::uint64_t next_start(std::uint64_t cycle) const { return !full() && next_start_ > cycle ? next_start_ : never; }
+    /// The next cycle after `cycle`, no earlier than `earliest`, at which an item may start; `never` if that depends on
+    /// a free place.
+    std::uint64_t next_start(std::uint64_t cycle, std::uint64_t earliest = 0) const {
+        const std::uint64_t next = std::max(next_start_, earliest);
+        return !full() && next > cycle ? next : never;
+    }
 
   private:
     struct Stage {

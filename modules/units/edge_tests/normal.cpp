@@ -46,7 +46,7 @@ bool NormalTest::may_start(const NormalOperands& part) const {
     if (!part.tag.is_edge() || needed == 0)
         return true;
     const Corners* corners = corners_.find(part.tag.triangle);
-    return corners != nullptr && corners->bumped == needed;
+    return corners != nullptr && corners->bumped == needed && corners->known_from <= clock_.last_cycle();
 }
 
 void NormalTest::reads(const NormalOperands& part, Reads& reads) const {
@@ -62,6 +62,7 @@ NormalResult NormalTest::process(const NormalOperands& part, const Entries& entr
     const datapath::Direction n = bumped(part.n_i, part.tangent_i, part.handedness_i, entry);
     Corners& corners = corners_.find_or_open(part.tag.triangle);
     corners.bumped |= part.tag.bit();
+    corners.known_from = entries_arrive();
     corners.displaced_n[part.tag.index()] = n;
     compared_ = {n, n, n};
     return {part.tag};

@@ -44,7 +44,8 @@ class NormalTest : public Stage<NormalOperands, NormalResult> {
     /// The corners of a base triangle.
     struct Corners {
         Parts bumped = 0;
-        Parts tested = 0;  // edges
+        std::uint64_t known_from = 0;  // the cycle in which the map entry of the last one arrives
+        Parts tested = 0;              // edges
         std::array<datapath::Direction, 3> displaced_n;
     };
 

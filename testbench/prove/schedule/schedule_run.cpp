@@ -230,16 +230,41 @@ bool has_schedule(const MachineSetup& setup) {
            !cached && !shared;
 }
 
-std::string difference(const Job& job, const BaseMesh& mesh, const HeightMap& map) {
+/// Observes a machine's clock in every second stretch of some hundred cycles, a hundred times.
+class Observer : public sc_core::sc_module, public CycleObserver {
+  public:
+    Observer(const sc_core::sc_module_name& name, CycleScheduler& clock) : sc_module(name), clock_(clock) {
+        SC_HAS_PROCESS(Observer);
+        SC_METHOD(begin_stretch);
+    }
+
+  private:
+    void begin_stretch() {
+        clock_.observe(stretches_ % 2 == 1 ? this : nullptr);
+        if (++stretches_ < 100)
+            next_trigger(clock_.period() * (1 + stretches_ * 97 % 600));
+    }
+    void begin(std::uint64_t) override {}
+    void end_of_cycle(std::uint64_t, std::uint64_t) override {}
+
+    CycleScheduler& clock_;
+    unsigned stretches_ = 0;
+};
+
+std::string difference(const Job& job, const BaseMesh& mesh, const HeightMap& map, bool observed) {
     const MachineSetup setup = make_setup(job, mesh, map);
     if (!has_schedule(setup))
         return "this design has no schedule";
     schedule::RecordedUnits units;
     Simulation simulation(setup, most_triangles, most_cycles_without_progress, &units);
     std::vector<std::unique_ptr<ClockedText>> clocked;
+    std::vector<std::unique_ptr<Observer>> observers;
     for (const auto& hosted : simulation.machines) {
         units.of(hosted->machine.clock).observe(*hosted);
         clocked.push_back(std::make_unique<ClockedText>(*hosted));
+        if (observed)
+            observers.push_back(
+                std::make_unique<Observer>(sc_core::sc_gen_unique_name("observer"), hosted->machine.clock));
     }
     if (std::string stuck = simulation.run(); !stuck.empty())
         return stuck;
@@ -260,11 +285,11 @@ std::string difference(const Job& job, const BaseMesh& mesh, const HeightMap& ma
 
 }  // namespace
 
-std::string schedule_difference(const Job& job, const BaseMesh& mesh, const HeightMap& map) {
+std::string schedule_difference(const Job& job, const BaseMesh& mesh, const HeightMap& map, bool observed) {
     const ChildEnd end = run_in_child(
         [&]() -> std::string {
             try {
-                return difference(job, mesh, map);
+                return difference(job, mesh, map, observed);
             } catch (const std::exception& error) {
                 return error.what();
             }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "modules/memories/table_memory.h"
+#include "testbench/common/random.h"
 #include "testbench/tests/modules/memories/memory_reader.h"
 #include "testbench/tests/support/case_table.h"
 
@@ -286,4 +287,152 @@ TEST_CASE("memory: b_transport adds the latency to the delay it is given, and co
     CHECK(delay == sc_time(33 + 60, SC_PS));
     CHECK(bench.memory.transactions() == 1);
     CHECK(bench.reader().port.reads() == 1);
+}
+
+namespace {
+
+struct PortOwner : sc_core::sc_module {
+    MemoryPort port;
+    PortOwner(const sc_core::sc_module_name& name, std::size_t entry_bytes)
+        : sc_module(name), port("port", entry_bytes, true) {}
+};
+
+/// A memory whose reader makes requests, and one like it that tells its reader their cycles.
+struct TwoMemories {
+    TableMemory requested, prompt;
+    MemoryReader reader;
+    PortOwner owner;
+    MemoryPort& port = owner.port;
+
+    TwoMemories(const std::string& name, CycleScheduler& clock, const MemoryTiming& timing)
+        : requested((name + "_requested").c_str(), clock, layout, timing, {}),
+          prompt((name + "_prompt").c_str(), clock, layout, timing, {}),
+          reader((name + "_reader").c_str(), clock, 64, true),
+          owner((name + "_owner").c_str(), 4) {
+        clock.attach(requested);
+        reader.base = layout.base;
+        reader.entry_bytes = reader.port.entry_bytes();
+        reader.port.bind(requested);
+        port.bind(prompt);
+    }
+
+    /// Makes the reader's requests, each as early as possible, of the prompt memory.
+    void read_promptly() {
+        std::uint64_t offered = reader.from;
+        for (std::size_t k = 0; k < reader.reads.size(); ++k) {
+            std::vector<std::uint64_t> addresses, values(reader.reads[k].size());
+            for (const std::uint32_t entry : reader.reads[k])
+                addresses.push_back(layout.base + 4 * entry);
+            CHECK(reader.offered.at(k) == offered);
+            const PromptMemory::Times times =
+                port.read_promptly(addresses.data(), static_cast<unsigned>(addresses.size()), values.data(), offered);
+            CHECK(reader.answered.at(k) == times.answered);
+            for (std::size_t entry = 0; entry < values.size(); ++entry)
+                REQUIRE(values[entry] == 3 * reader.reads[k][entry] + 1);
+            offered = times.accepted;
+        }
+    }
+
+    void compare(std::uint64_t cycles) {
+        requested.activity().finish(cycles);
+        prompt.activity().finish(cycles);
+        const Activity &a = requested.activity(), &b = prompt.activity();
+        CHECK(a.items_in() == b.items_in());
+        CHECK(a.items_out() == b.items_out());
+        CHECK(a.item_cycles() == b.item_cycles());
+        CHECK(a.high_water_mark() == b.high_water_mark());
+        for (std::size_t state = 0; state < states; ++state)
+            CHECK(a.cycles_in(static_cast<State>(state)) == b.cycles_in(static_cast<State>(state)));
+        CHECK(requested.transactions() == prompt.transactions());
+        CHECK(requested.slots_taken() == prompt.slots_taken());
+        CHECK(requested.occupied_cycles() == prompt.occupied_cycles());
+        CHECK(requested.cycles_held_up() == prompt.cycles_held_up());
+    }
+};
+
+}  // namespace
+
+TEST_CASE("memory: a prompt memory tells the cycles that requests take, and has the same figures") {
+    Random random(11);
+    CycleScheduler clock("clock", period);
+    std::vector<std::unique_ptr<TwoMemories>> pairs;
+    for (int k = 0; k < 20; ++k) {
+        MemoryTiming its = timing(random.natural(1, 4), 1u << random.natural(0, 4), random.natural(0, 9),
+                                  random.natural(0, 4), random.natural(1, 4));
+        its.interleave = random.coin() ? Interleave::entry : Interleave::exclusive_or;
+        its.window = random.coin() ? random.natural(1, 9) : 0;
+        pairs.push_back(std::make_unique<TwoMemories>("pair_" + std::to_string(k), clock, its));
+        for (int request = 0; request < 60; ++request) {
+            std::vector<std::uint32_t> entries(random.natural(1, 9));
+            for (std::uint32_t& entry : entries)
+                entry = random.natural(0, 255);
+            pairs.back()->reader.reads.push_back(entries);
+        }
+    }
+    sc_core::sc_start(sc_core::SC_ZERO_TIME);
+    for (const auto& pair : pairs) {
+        pair->reader.fill(256);
+        for (std::uint32_t entry = 0; entry < 256; ++entry) {
+            const std::uint32_t value = 3 * entry + 1;
+            REQUIRE(pair->port.load(layout.base + 4 * entry, reinterpret_cast<const unsigned char*>(&value), 4));
+        }
+    }
+    sc_core::sc_start();
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+        INFO(k);
+        REQUIRE(pairs[k]->port.is_prompt());
+        pairs[k]->reader.check_values();
+        pairs[k]->read_promptly();
+        pairs[k]->compare(clock.last_cycle() + 1);
+    }
+}
+
+TEST_CASE("memory: prompt reads return entries of every size, and refuse addresses outside") {
+    struct Sized {
+        unsigned bytes;
+        TableMemory memory;
+        PortOwner owner;
+        MemoryPort& port = owner.port;
+        Sized(CycleScheduler& clock, unsigned entry_bytes)
+            : bytes(entry_bytes),
+              memory(("memory_" + std::to_string(bytes)).c_str(), clock, {4096, 16, 16, bytes}, {}, {}),
+              owner(("owner_" + std::to_string(bytes)).c_str(), bytes) {
+            port.bind(memory);
+        }
+    };
+    CycleScheduler clock("clock", period);
+    std::vector<std::unique_ptr<Sized>> sizes;
+    for (const unsigned bytes : {1u, 2u, 3u, 4u, 5u, 6u, 8u})
+        sizes.push_back(std::make_unique<Sized>(clock, bytes));
+    sc_core::sc_start(sc_core::SC_ZERO_TIME);
+    for (const auto& its : sizes) {
+        INFO(its->bytes);
+        std::vector<unsigned char> ones(256 * its->bytes, 0xff);
+        REQUIRE(its->port.load(4096, ones.data(), 256 * its->bytes));
+        std::uint64_t value = 0;
+        const auto read = [&](std::uint64_t address) { its->port.read_promptly(&address, 1, &value, 0); };
+        for (const std::uint64_t entry : {0u, 255u}) {
+            read(4096 + entry * its->bytes);
+            CHECK(value == ~std::uint64_t{0} >> (64 - 8 * its->bytes));
+        }
+        for (const std::uint64_t outside : {std::uint64_t{4095}, 4096 + std::uint64_t{256} * its->bytes})
+            CHECK_THAT(error_of([&] { read(outside); }), Catch::Contains(its->port.socket.name()) &&
+                                                             Catch::Contains("answered TLM_ADDRESS_ERROR_RESPONSE"));
+    }
+}
+
+TEST_CASE("memory: it is prompt for a single reader, on chip and without stalls only") {
+    CycleScheduler clock("clock", period);
+    TableMemory shared("shared", clock, layout, {}, {}), stalled("stalled", clock, layout, {}, {1, 10, 4});
+    MemoryTiming cached;
+    cached.cache.bytes = 256;
+    TableMemory off_chip("off_chip", clock, layout, cached, {});
+    PortOwner one("one", 4), other("other", 4), third("third", 4), fourth("fourth", 4);
+    one.port.bind(shared);
+    other.port.bind(shared);
+    third.port.bind(stalled);
+    fourth.port.bind(off_chip);
+    sc_core::sc_start(sc_core::SC_ZERO_TIME);
+    for (const PortOwner* const owner : {&one, &other, &third, &fourth})
+        CHECK_FALSE(owner->port.is_prompt());
 }
