@@ -182,11 +182,10 @@ TEST_CASE("a dumped job with every byte changed is a job or an InputError") {
     const std::string bare = bare_dump(Job{});
     REQUIRE(same_settings(parse_job(bare, "bare.toml"), Job{}));
     for (std::size_t i = 0; i < bare.size(); ++i) {
-        for (unsigned bit = 0; bit < 8; ++bit) {
-            std::string changed = bare;
-            changed[i] = static_cast<char>(static_cast<unsigned char>(changed[i]) ^ (1u << bit));
-            survives(changed);
-        }
+        std::string changed = bare;
+        // One bit each: the fuzzer changes more.
+        changed[i] = static_cast<char>(static_cast<unsigned char>(changed[i]) ^ (1u << (i + i / 8) % 8));
+        survives(changed);
         survives(bare.substr(0, i) + bare.substr(i + 1));
         survives(bare.substr(0, i) + bare.substr(i, 1) + bare.substr(i));
     }

@@ -177,7 +177,8 @@ TEST_CASE("the example builds with the sources as a folder, and by FetchContent"
         with_glm_and_fmt + Arguments{"-DCMAKE_CXX_FLAGS=" + strict, "-DTESSERA_SOURCE=" + source_folder().string(),
                                      "-DFETCHCONTENT_SOURCE_DIR_TESSERA=" + source_folder().string(),
                                      // both build tessera in the same folder: the second finds it built
-                                     "-DFETCHCONTENT_BASE_DIR=build", "-DCMAKE_UNITY_BUILD=ON"};
+                                     "-DFETCHCONTENT_BASE_DIR=build", "-DCMAKE_UNITY_BUILD=ON",
+                                     "-DCMAKE_BUILD_TYPE=Debug"};
     require_success(configuring(example, settings + Arguments{"-DTESSERA_BY=add_subdirectory"}), folder.path());
     const std::string printed = build_and_run(folder.path());
     require_success(configuring(example, settings + Arguments{"-DTESSERA_BY=FetchContent"}), folder.path());
