@@ -48,7 +48,12 @@ class Stage : public Unit {
     void delivers_to(const UnitContext& context, StreamOutput<Payload>& output, Payload (*select)(const Out&),
                      Parts only);
     void reads_through(MemoryPort& port, unsigned most_requests);
-    void may_wait() { may_wait_ = true; }
+    /// For a unit that overrides may_start(). heeds_arrival: what process() sets counts there from entries_arrive() on;
+    /// otherwise process() is not called before then.
+    void may_wait(bool heeds_arrival = false) {
+        may_wait_ = true;
+        heeds_arrival_ = heeds_arrival;
+    }
     /// Area beyond what Stage counts itself (the input buffer, and the wider of the items in and out in each register
     /// stage): an item's multiplications; bits kept with it in each register stage.
     void multiplies(const datapath::Multiplications& multiplications);
@@ -63,8 +68,8 @@ class Stage : public Unit {
 
     /// Determines the entries that an item needs.
     virtual void reads(const In&, Reads&) const {}
-    /// Processes an item with the entries read for it, and returns the result. A prompt memory's entries are there
-    /// before they arrive.
+    /// Processes an item with the entries read for it, and returns the result. With a prompt memory it is called when the
+    /// item starts.
     virtual Out process(const In& item, const Entries& entries) = 0;
     /// Within process(), timed mode: the cycle in which the item's entries arrive.
     std::uint64_t entries_arrive() const { return entries_arrive_; }
@@ -94,6 +99,7 @@ class Stage : public Unit {
 
     const sc_core::sc_time latency_;
     bool may_wait_ = false;
+    bool heeds_arrival_ = false;
     std::uint64_t entries_arrive_ = 0;
     StreamInput<In>* input_ = nullptr;
     const std::shared_ptr<Machinery> machinery_;  // its deleter, unlike a unique_ptr's, needs no stage_steps.h

@@ -232,7 +232,8 @@ void Stage<In, Out>::take_answers(std::uint64_t cycle) {
 template <class In, class Out>
 void Stage<In, Out>::start_of_simulation() {
     const auto& ports = machinery_->ports;
-    machinery_->may_be_prompt = ports[0] != nullptr && ports[1] == nullptr && ports[0]->is_prompt();
+    machinery_->may_be_prompt =
+        ports[0] != nullptr && ports[1] == nullptr && ports[0]->is_prompt() && (!may_wait_ || heeds_arrival_);
 }
 
 template <class In, class Out>

@@ -27,7 +27,7 @@ NormalTest::NormalTest(const sc_core::sc_module_name& name, const UnitContext& c
     takes_from(context, input);
     delivers_to(context, output, edge_parts);
     reads_through(normal_map, 1);
-    may_wait();
+    may_wait(true);
     const datapath::Formats& f = registers_.formats;
     datapath::Multiplications all;
     all.add(normalise_multiplications(f, f.normal.bits), 2)
