@@ -26,7 +26,7 @@ struct Stage<In, Out>::Machinery {
         std::uint8_t answered = 0;
         std::array<std::uint8_t, Reads::most_requests> port;
         std::array<std::uint8_t, Reads::most_requests> count;
-        std::uint64_t answered_at = 0;  // from a prompt memory: the cycle of the last answer
+        std::uint64_t answered_at = 0;  // from a prompt memory: the cycle in which the entries have arrived
 
         bool processed() const { return answered == requests; }
     };
@@ -35,18 +35,20 @@ struct Stage<In, Out>::Machinery {
         : servers(pipelines), pipeline(timing, pipelines, memory_latency) {}
 
     /// Reads the entries of the item that starts in `cycle` from a prompt memory: each request is offered when the one
-    /// before it is accepted. Returns the cycle of the last answer.
+    /// before it is accepted. Returns the cycle in which they have arrived.
     std::uint64_t read_promptly(std::uint64_t cycle) {
+        std::uint64_t arrived = cycle;
         unsigned entry = 0;
         for (unsigned k = 0; k < reads.requests(); ++k) {
             const PromptMemory::Times times =
                 ports[0]->read_promptly(reads.addresses() + entry, reads.count(k), &entries[entry], cycle);
             entry += reads.count(k);
             cycle = times.accepted;
-            last_answer = std::max(last_answer, times.answered);
+            arrived = last_answer = times.answered;
         }
+        asked = reads.requests();
         asked_at = cycle;
-        return last_answer;
+        return arrived;
     }
 
     /// Makes the requests of the item started last while the memories accept them. Returns true once all are accepted.
@@ -180,12 +182,13 @@ void Stage<In, Out>::start(std::uint64_t cycle) {
         slot.item = item;
     activity_.item_in(cycle);
     if (Access != TableReads::none) {
-        slot.requests = slot.answered = 0;
+        entries_arrive_ = cycle;
         m.reads.clear();
         reads(item, m.reads);
     }
     if (Access == TableReads::requested) {
         m.asked = m.asked_entries = 0;
+        slot.answered = 0;
         slot.requests = static_cast<std::uint8_t>(m.reads.requests());
         // The first condition tells the compiler the bound that the second keeps.
         for (unsigned k = 0; k < Reads::most_requests && k < m.reads.requests(); ++k) {
@@ -194,11 +197,8 @@ void Stage<In, Out>::start(std::uint64_t cycle) {
         }
     }
     if (Access == TableReads::prompt) {
-        slot.answered_at = m.reads.requests() == 0 ? 0 : m.read_promptly(cycle);
-        if (m.reads.requests() > 0)
-            m.pipeline.finish(m.pipeline.size() - 1, slot.answered_at + m.pipeline.latency());
-        m.asked = m.reads.requests();
-        entries_arrive_ = slot.answered_at;
+        slot.answered_at = entries_arrive_ = m.read_promptly(cycle);
+        m.pipeline.finish(m.pipeline.size() - 1, slot.answered_at + m.pipeline.latency());
     }
     if (Access == TableReads::requested && slot.requests > 0)
         m.pipeline.finish(m.pipeline.size() - 1, never);
